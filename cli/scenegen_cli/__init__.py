@@ -1,0 +1,1 @@
+"""The front door: the `scenegen` command, one file per subcommand."""

@@ -1,0 +1,1 @@
+"""What is kept: plan, pipeline, files, versions, verification and loaders."""

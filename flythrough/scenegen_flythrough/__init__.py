@@ -1,0 +1,1 @@
+"""Where the camera goes: trajectories and the clearance that keeps them collision-free."""

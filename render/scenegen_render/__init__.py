@@ -1,0 +1,1 @@
+"""What a camera receives: radiance, depth, labels, counts."""

@@ -1,0 +1,1 @@
+"""Sun, sky and weather of a place and a day."""

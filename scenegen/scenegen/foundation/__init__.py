@@ -1,0 +1,1 @@
+"""What every room stands on: errors, randomness, canonical JSON, atomic files, workers. Imports nothing of ours."""

@@ -1,0 +1,42 @@
+"""A section of a recipe: the one place where a key, its default, its bounds and its meaning stand."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+
+class Section(BaseModel):
+    """Base of all recipe sections: frozen, unknown keys refused, no NaN or infinity anywhere."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True)
+
+
+def _no_bool(value: Any) -> Any:
+    if isinstance(value, bool):
+        raise ValueError("expected a number, not yes/no")
+    return value
+
+
+Number = Annotated[float, BeforeValidator(_no_bool)]
+"""A finite real number; ``true`` is not 1."""
+
+Count = Annotated[int, BeforeValidator(_no_bool), Field(strict=True)]
+"""A whole number; ``true`` is not 1 and ``3.0`` is not 3."""
+
+
+def _span(value: Any) -> Any:
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return (value, value)
+    return tuple(value) if isinstance(value, list) else value
+
+
+def _ordered(value: tuple[float, float]) -> tuple[float, float]:
+    if value[0] > value[1]:
+        raise ValueError(f"the range [{value[0]:g}, {value[1]:g}] is upside down")
+    return value
+
+
+Span = Annotated[tuple[Number, Number], BeforeValidator(_span)]
+"""A closed range to draw from, ``[low, high]``; a single number means that very value."""

@@ -1,0 +1,1 @@
+"""Triangles: the mesh types and the builders every map shares."""

@@ -1,0 +1,1 @@
+"""Surface temperatures from a periodic heat balance."""

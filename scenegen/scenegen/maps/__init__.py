@@ -1,0 +1,1 @@
+"""The map families, one folder each."""

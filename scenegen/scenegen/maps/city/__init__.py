@@ -1,0 +1,1 @@
+"""City: an irregular street network, blocks, buildings, a park."""

@@ -1,0 +1,1 @@
+"""What learns from the data and how it is judged."""
