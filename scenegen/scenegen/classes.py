@@ -113,6 +113,7 @@ _THINGS = {
 }
 
 CLASSES: tuple[SemanticClass, ...] = tuple(
-    SemanticClass(id=s, name=s.name.lower(), colour=(_STUFF | _THINGS)[s], thing=s in _THINGS) for s in Semantic
+    SemanticClass(id=s, name=s.name.lower(), colour=(_STUFF | _THINGS)[s], thing=s in _THINGS)
+    for s in Semantic
 )
 """All classes, indexed by id."""

@@ -28,4 +28,6 @@ def stream(seed: int, *path: str | int) -> np.random.Generator:
         of how many siblings were made before it.
     """
     text = "/".join([f"{int(seed)}", *(f"{type(p).__name__}:{p}" for p in path)])
-    return np.random.Generator(np.random.PCG64(int.from_bytes(hashlib.sha256(text.encode()).digest(), "little")))
+    return np.random.Generator(
+        np.random.PCG64(int.from_bytes(hashlib.sha256(text.encode()).digest(), "little"))
+    )
