@@ -1,8 +1,8 @@
 """YAML as a recipe needs it: plain data only, no surprises, one error that names file and line.
 
-YAML 1.1 turns ``no`` into false, ``12:30:45`` into 45045 and ``017`` into 15, keeps the last of two equal keys, and lets a
-342-byte file of aliases grow to gigabytes once it is serialised. Here PyYAML only splits the text into events; what a
-scalar means is decided below, close to YAML 1.2's JSON schema: ``null``, ``true``, ``false``, decimal numbers, text.
+YAML 1.1 turns ``no`` into false, ``12:30:45`` into 45045 and ``017`` into 15, keeps the last of two equal keys, and
+lets a 342-byte file of aliases grow to gigabytes once it is serialised. Here PyYAML only splits the text into events;
+what a scalar means is decided below, near YAML 1.2's JSON schema: ``null``, ``true``, decimal numbers, text.
 """
 
 from __future__ import annotations
