@@ -4,6 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from jaxtyping import Float64
+
+from scenegen.climate.humidity import saturation_pressure_hPa
+from scenegen.radiometry.atmosphere import Atmosphere
+
 
 @dataclass(frozen=True)
 class Weather:
@@ -40,3 +46,30 @@ class Weather:
     linke_turbidity: float
     visibility_km: float = 23.0
     sky_optical_depth_factor: float = 1.0
+
+    def air_K(self, hour: Float64[np.ndarray, "*shape"]) -> Float64[np.ndarray, "*shape"]:
+        """Air temperature [K] at hours of the day, a cosine with its maximum at `air_peak_hour`."""
+        phase = 2 * np.pi * (np.asarray(hour, dtype=np.float64) - self.air_peak_hour) / 24.0
+        return np.asarray(self.air_mean_K + self.air_amplitude_K * np.cos(phase))
+
+    @property
+    def vapour_pressure_hPa(self) -> float:
+        """Partial pressure of water vapour [hPa]."""
+        return float(saturation_pressure_hPa(np.float64(self.dew_point_K)))
+
+    def atmosphere(self, hour: float) -> Atmosphere:
+        """Air, in-band sky and path at an hour of this day, as the camera sees them."""
+        air = float(self.air_K(np.float64(hour)))
+        return Atmosphere(
+            air_K=air,
+            vapour_pressure_hPa=self.vapour_pressure_hPa,
+            cloud_fraction=self.cloud_fraction,
+            cloud_K=cloud_base_K(air, self.dew_point_K),
+            visibility_km=self.visibility_km,
+            sky_optical_depth_factor=self.sky_optical_depth_factor,
+        )
+
+
+def cloud_base_K(air_K: float, dew_point_K: float) -> float:
+    """Temperature [K] at the lifting condensation level: 125 m per kelvin of dew point depression, 6.5 K/km."""
+    return air_K - 6.5e-3 * 125.0 * max(air_K - dew_point_K, 0.0)
