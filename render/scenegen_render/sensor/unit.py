@@ -60,4 +60,4 @@ def draw_unit(
 def _normal(rng: np.random.Generator, shape: tuple[int, ...], sigma: float) -> Float32[np.ndarray, "..."]:
     offset: Float32[np.ndarray, "..."] = rng.standard_normal(shape, dtype=np.float32)
     offset *= np.float32(sigma)
-    return offset
+    return np.asarray(offset)
