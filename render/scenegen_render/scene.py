@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import gc
 import sys
+import zlib
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,10 @@ class LoadedWorld:
     face_record : mitsuba.UInt, 4 per face
         Sites of the three corners, then ``surface | semantic << 16``: one packed gather per hit.
     face_object : mitsuba.UInt, 1 per face
+    face_normal : mitsuba.UInt, 1 per face
+        Outward unit normal, two 16-bit octahedral coordinates.
+    texture_seed : int
+        Of the surface texture; a pure function of the mesh, so that no two worlds share a pattern.
     vertices : mitsuba.Float, 3 per vertex
         [m], as Embree holds them.
     faces : mitsuba.UInt, 3 per face
@@ -41,6 +46,8 @@ class LoadedWorld:
         self.scene = _scene(self.vertices, self.faces)
         self.face_record = mi.UInt(_face_record(world).reshape(-1))
         self.face_object = mi.UInt(world.face_object)
+        self.face_normal = mi.UInt(_packed_normals(world))
+        self.texture_seed = zlib.crc32(np.ascontiguousarray(world.mesh.vertices).data)
 
     def nearest_site(self, face: Any, uv: Any) -> Any:
         """Site whose corner lies nearest to a hit (largest barycentric weight).
@@ -58,7 +65,8 @@ class LoadedWorld:
 
     def release(self) -> None:
         """Give the memory back to the system; the object must not be used afterwards."""
-        del self.scene, self.vertices, self.faces, self.face_record, self.face_object, self.world
+        del self.scene, self.vertices, self.faces, self.face_record, self.face_object
+        del self.face_normal, self.world
         release_memory()
 
 
@@ -102,6 +110,18 @@ def _face_record(world: World) -> np.ndarray[Any, np.dtype[np.uint32]]:
     return record
 
 
+def _packed_normals(world: World) -> np.ndarray[Any, np.dtype[np.uint32]]:
+    """Octahedral face normals, 16 bits a coordinate (3e-5 rad); a degenerate face points up."""
+    corners = world.mesh.vertices[world.mesh.faces]
+    n = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).astype(np.float64)
+    size = np.abs(n).sum(axis=1, keepdims=True)
+    n = np.where(size > 0, n / np.maximum(size, 1e-300), (0.0, 0.0, 1.0))
+    folded = (1.0 - np.abs(n[:, [1, 0]])) * np.copysign(1.0, n[:, :2])
+    flat = np.where(n[:, 2:] < 0, folded, n[:, :2])
+    x, y = np.rint((flat.T + 1.0) * 32767.0).astype(np.uint32)
+    return np.asarray(x | y << np.uint32(16))
+
+
 def _check(world: World) -> None:
     """Refuse what would crash the renderer or make it answer nonsense."""
     mesh, sites = world.mesh, len(world.sites.area)
@@ -111,7 +131,10 @@ def _check(world: World) -> None:
         (bool((np.abs(mesh.vertices) < _FAR_M).all()), "reaches beyond 100 km; centre it on the origin"),
         (int(mesh.faces.max(initial=0)) < len(mesh.vertices), "has a face with a vertex index out of range"),
         (int(world.corner_site.max(initial=0)) < sites, "has a face corner whose site does not exist"),
-        (int(world.face_surface.max(initial=0)) < len(world.palette), "has a face whose surface does not exist"),
+        (
+            int(world.face_surface.max(initial=0)) < len(world.palette),
+            "has a face whose surface does not exist",
+        ),
     )
     for holds, problem in limits:
         if not holds:

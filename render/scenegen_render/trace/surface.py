@@ -1,0 +1,131 @@
+"""What a ray finds on a surface: its temperature with texture, and the radiance that leaves it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+from scenegen_render import backend
+from scenegen_render.trace import noise
+from scenegen_render.trace.lit import Lit
+
+_OCTAVES = ((1.0, 1.0), (2.5, 0.63), (6.25, 0.4))
+"""Frequency and amplitude: power falls as 1/frequency per octave, the -3 slope of real aerial LWIR spectra."""
+_NORM = noise.UNIT / math.sqrt(sum(a * a for _, a in _OCTAVES))
+
+
+@dataclass(frozen=True, eq=False)
+class Hit:
+    """Rays that met a surface (and, masked out, those that did not).
+
+    Attributes
+    ----------
+    valid : mitsuba.Bool
+    depth : mitsuba.Float
+        Distance in units of the ray's direction.
+    point : mitsuba.Vector3f
+        World position [m].
+    face : mitsuba.UInt
+    uv : mitsuba.Point2f
+    """
+
+    valid: Any
+    depth: Any
+    point: Any
+    face: Any
+    uv: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Skin:
+    """The surface at a hit.
+
+    Attributes
+    ----------
+    temperature_K : mitsuba.Float
+        Interpolated from the corner sites, without texture.
+    irradiance : mitsuba.Float
+        Diffuse in-band irradiance, interpolated likewise [W m^-2].
+    what : mitsuba.UInt
+        ``surface | semantic << 16``.
+    normal : mitsuba.Vector3f
+    emissivity, texture_K, texture_frequency, mirror : mitsuba.Float
+    """
+
+    temperature_K: Any
+    irradiance: Any
+    what: Any
+    normal: Any
+    emissivity: Any
+    texture_K: Any
+    texture_frequency: Any
+    mirror: Any
+
+
+def cast(lit: Lit, origin: Any, direction: Any, coherent: bool, active: Any = True) -> Hit:
+    """Trace rays against the world."""
+    mi, dr = backend.modules()
+    pi = lit.loaded.scene.ray_intersect_preliminary(
+        mi.Ray3f(origin, direction), coherent=coherent, active=active
+    )
+    valid = pi.is_valid()
+    return Hit(valid, pi.t, dr.fma(direction, pi.t, origin), pi.prim_index, pi.prim_uv)
+
+
+def skin(lit: Lit, hit: Hit) -> Skin:
+    """Look up and interpolate what stands at a hit: two packed gathers of one row and one of the small palette."""
+    mi, dr = backend.modules()
+    warm = dr.gather(mi.Vector4f, lit.face, hit.face * 2, hit.valid)
+    shone = dr.gather(mi.Vector4f, lit.face, hit.face * 2 + 1, hit.valid)
+    what = dr.reinterpret_array(mi.UInt, warm.w)
+    own = dr.gather(mi.Vector4f, lit.surface, what & 0xFFFF, hit.valid)
+    u, v = hit.uv.x, hit.uv.y
+    return Skin(
+        temperature_K=dr.fma(u, warm.y - warm.x, dr.fma(v, warm.z - warm.x, warm.x)),
+        irradiance=dr.fma(u, shone.y - shone.x, dr.fma(v, shone.z - shone.x, shone.x)),
+        what=what,
+        normal=unpack_normal(dr.reinterpret_array(mi.UInt, shone.w)),
+        emissivity=own.x,
+        texture_K=own.y,
+        texture_frequency=own.z,
+        mirror=own.w,
+    )
+
+
+def textured_K(lit: Lit, hit: Hit, on: Skin, footprint_m: Any) -> Any:
+    """Kinetic temperature with the surface's small-scale variation, fixed to its rest position.
+
+    Parameters
+    ----------
+    footprint_m : mitsuba.Float
+        Longest extent of the pixel on the surface. An octave vanishes between one and two lattice spacings, where it
+        could only alias.
+    """
+    mi, dr = backend.modules()
+    place = noise.tilted(hit.point) * on.texture_frequency
+    size = footprint_m * on.texture_frequency
+    total = mi.Float(0.0)
+    for k, (frequency, amplitude) in enumerate(_OCTAVES):
+        keep = dr.clip(2.0 - size * frequency, 0.0, 1.0)
+        total = dr.fma(
+            keep * amplitude, noise.value_noise(place * frequency + 17.3 * k, lit.texture_seed + k), total
+        )
+    return dr.fma(total, on.texture_K * _NORM, on.temperature_K)
+
+
+def diffuse_radiance(lit: Lit, on: Skin, temperature_K: Any) -> Any:
+    """Emission plus reflected baked irradiance: ``eps B(T) + (1 - eps) E / pi``."""
+    _, dr = backend.modules()
+    reflected = on.irradiance * (1.0 / math.pi)
+    return dr.fma(on.emissivity, lit.air.blackbody(temperature_K) - reflected, reflected)
+
+
+def unpack_normal(packed: Any) -> Any:
+    """Unit vector from two 16-bit octahedral coordinates (Cigolla et al. 2014, survey of unit vector encodings)."""
+    mi, dr = backend.modules()
+    x = dr.fma(mi.Float(packed & 0xFFFF), 2.0 / 65534.0, -1.0)
+    y = dr.fma(mi.Float(packed >> 16), 2.0 / 65534.0, -1.0)
+    z = 1.0 - dr.abs(x) - dr.abs(y)
+    fold = dr.maximum(-z, 0.0)
+    return dr.normalize(mi.Vector3f(x - dr.copysign(fold, x), y - dr.copysign(fold, y), z))
