@@ -1,0 +1,159 @@
+"""One flight through a world: drawn, steered on the coarse map, then proven against the exact mesh."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from jaxtyping import Bool, Float64
+
+from scenegen.foundation.errors import InputError, RejectedDrawError
+from scenegen.world import World
+from scenegen_flythrough.airspace import Airspace
+from scenegen_flythrough.attitude import camera_poses
+from scenegen_flythrough.knobs import FlightKnobs
+from scenegen_flythrough.steering import Intent, fly_batch
+from scenegen_flythrough.trajectory import Trajectory
+
+_BATCH = 32  # paths tried together
+_PROVEN_TOGETHER = 4
+_BATCHES_PER_INTENT = 4
+_VIEW_M = 40.0  # how much of the world must still lie ahead of every pose
+
+
+def fly(
+    world: World, knobs: FlightKnobs, frames: int, rng: np.random.Generator, airspace: Airspace
+) -> Trajectory:
+    """Draw a smooth collision-free flight.
+
+    Speed, height and camera angle are drawn first; up to 128 paths are tried with them before they are drawn anew, so
+    that low flights between houses are as likely as the easy ones above the roofs.
+
+    Parameters
+    ----------
+    world : World
+    knobs : FlightKnobs
+    frames : int
+        Frames to be stored; the trajectory has one pose more at both ends.
+    rng : numpy.random.Generator
+        This flight's own generator.
+    airspace : Airspace
+        Of the same world.
+
+    Returns
+    -------
+    Trajectory
+        Its capsules of radius `knobs.clearance_m` between successive poses touch nothing, and at least one pose is
+        connected to the open sky, so that no pose lies inside anything.
+
+    Raises
+    ------
+    RejectedDrawError
+        `knobs.max_draws` paths were rejected.
+    """
+    if frames < 1:
+        raise InputError(f"a clip needs at least one frame, not {frames}; raise the number of frames")
+    if airspace.world is not world:
+        raise AssertionError("the airspace belongs to another world")
+    rejected, reasons = 0, np.zeros(3, np.int64)
+    while rejected < knobs.max_draws:
+        intent_rng, *batch_rngs = rng.spawn(1 + _BATCHES_PER_INTENT)
+        intent = _draw_intent(knobs, intent_rng)
+        room = airspace.room(intent.height_m, max(knobs.clearance_m, 0.1 * intent.height_m) + 1.0)
+        for batch_rng in batch_rngs:
+            paths = fly_batch(airspace, room, knobs, intent, (_BATCH, frames + 2), batch_rng)
+            if len(paths) == 0:
+                rejected += _BATCH
+                reasons[1] += _BATCH
+                continue
+            index = _first_proven(airspace, knobs, paths, reasons)
+            if index is not None:
+                return _trajectory(airspace, knobs, intent, paths[index], rejected + index)
+            rejected += len(paths)
+    raise RejectedDrawError(_given_up(world, knobs, frames, rejected, reasons))
+
+
+def _draw_intent(knobs: FlightKnobs, rng: np.random.Generator) -> Intent:
+    speed, height, pitch = (child.uniform() for child in rng.spawn(3))
+    return Intent(
+        speed_mps=_between(knobs.speed_mps, speed),
+        height_m=_between(knobs.height_m, height),
+        mount_pitch_deg=_between(knobs.pitch_deg, pitch),
+    )
+
+
+def _between(span: tuple[float, float], share: float) -> float:
+    return span[0] + share * (span[1] - span[0])
+
+
+def _first_proven(
+    airspace: Airspace, knobs: FlightKnobs, paths: Float64[np.ndarray, "batch poses 3"], reasons: np.ndarray
+) -> int | None:
+    """Index of the first path that holds everything, as if they had been tried one after the other."""
+    inside = _inside(airspace, knobs, paths)
+    reasons[0] += int((~inside).sum())
+    candidates = np.flatnonzero(inside)
+    for first in range(0, len(candidates), _PROVEN_TOGETHER):
+        group = candidates[first : first + _PROVEN_TOGETHER]
+        free = _free(airspace, knobs, paths[group])
+        reasons[1] += int((~free).sum())
+        for index in group[free].tolist():
+            if airspace.open_to_sky(paths[index, ::8], knobs.clearance_m).any():
+                return int(index)
+            reasons[2] += 1
+    return None
+
+
+def _inside(
+    airspace: Airspace, knobs: FlightKnobs, paths: Float64[np.ndarray, "batch poses 3"]
+) -> Bool[np.ndarray, "batch"]:
+    """Which paths stay in the flight box and in the height range, and still have world ahead to look at."""
+    ground = airspace.world.ground
+    height = paths[:, :, 2] - ground.at(paths[:, :, :2].reshape(-1, 2)).reshape(paths.shape[:2])
+    low, high = knobs.height_m[0] - knobs.height_slack_m, knobs.height_m[1] + knobs.height_slack_m
+    good = ((height >= low) & (height <= high)).all(axis=1)
+    good &= ((paths >= airspace.low) & (paths <= airspace.high)).all(axis=(1, 2))
+    ahead = paths[:, 1:] - paths[:, :-1]
+    view_m = min(_VIEW_M, 0.15 * float((airspace.high - airspace.low)[:2].min()))
+    seen = paths[:, 1:, :2] + ahead[:, :, :2] * (view_m / knobs.spacing_m)
+    rows, columns = ground.height_m.shape
+    low_corner = np.asarray(ground.origin_m)
+    high_corner = low_corner + np.array([columns - 1, rows - 1]) * ground.cell_m
+    good &= ((seen >= low_corner) & (seen <= high_corner)).all(axis=(1, 2))
+    return np.asarray(good)
+
+
+def _free(
+    airspace: Airspace, knobs: FlightKnobs, paths: Float64[np.ndarray, "group poses 3"]
+) -> Bool[np.ndarray, "group"]:
+    """Which paths keep their clearance to the exact mesh, whole capsules from pose to pose."""
+    starts, ends = paths[:, :-1].reshape(-1, 3), paths[:, 1:].reshape(-1, 3)
+    touches = airspace.proximity.sweep(starts, ends, knobs.clearance_m).touches
+    return np.asarray(~touches.reshape(len(paths), -1).any(axis=1))
+
+
+def _trajectory(
+    airspace: Airspace,
+    knobs: FlightKnobs,
+    intent: Intent,
+    path: Float64[np.ndarray, "poses 3"],
+    rejected: int,
+) -> Trajectory:
+    closest = airspace.proximity.sweep(path[:-1], path[1:]).distance_m
+    return Trajectory(
+        world_from_camera=camera_poses(path, intent.speed_mps, knobs.bank_deg, intent.mount_pitch_deg),
+        time_s=(np.arange(len(path)) - 1.0) * (knobs.spacing_m / intent.speed_mps),
+        speed_mps=intent.speed_mps,
+        clearance_m=float(closest.min()),
+        rejected=rejected,
+    )
+
+
+def _given_up(world: World, knobs: FlightKnobs, frames: int, rejected: int, reasons: np.ndarray) -> str:
+    outside, blocked, enclosed = reasons.tolist()
+    length = math.ceil((frames + 1) * knobs.spacing_m)
+    return (
+        f"no free flight of {length} m in this {world.map} world after {rejected} draws ({outside} left the flight box "
+        f"or the height range, {blocked} came closer than clearance_m {knobs.clearance_m:g}, {enclosed} had no open "
+        "sky); ask for a shorter clip, less clearance, other heights or a slower speed"
+    )
