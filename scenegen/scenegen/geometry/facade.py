@@ -1,0 +1,221 @@
+"""Facades: planar walls with a grid of recessed windows and doors, all walls of a world at once.
+
+A wall is a tensor grid of lines: jambs of the window columns across, sills and heads of the storeys upwards. Its thermal
+sites are coarser than its vertices: one per crossing of every second pier with a spandrel, shared by all grid points around
+that crossing. A pane has one site.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Bool, Float64, Int64
+
+from scenegen.classes import Semantic
+from scenegen.geometry.part import STANDOFF_M, Part
+from scenegen.geometry.patch import lattice_quads, quads_to_triangles
+from scenegen.geometry.ragged import offsets, ragged_grid
+
+BLANK, WINDOW, DOOR = 0, 1, 2
+"""What fills a cell of the window grid."""
+
+_PLINTH_M = 0.6
+
+
+@dataclass(frozen=True, eq=False)
+class Walls:
+    """One row per planar wall.
+
+    Attributes
+    ----------
+    start, end : float64 (walls, 2)
+        Lower corners in plan [m], left to right seen from outside.
+    floor_m : float64 (walls,)
+        Height of the ground floor [m].
+    foundation_m : float64 (walls,)
+        How far the wall continues below its floor [m].
+    top_m : float64 (walls,)
+        Upper edge [m].
+    storeys : int64 (walls,)
+        At least 1.
+    first_storey_m, storey_m : float64 (walls,)
+        Height of the ground floor and of each floor above [m].
+    columns : int64 (walls,)
+        Window columns, at least 1.
+    window_share : float64 (walls,)
+        Window width over column width.
+    sill_m, head_m : float64 (walls,)
+        Above each floor [m].
+    first_sill_m, first_head_m : float64 (walls,)
+        The same on the ground floor [m].
+    surface, glass, door, object : int64 (walls,)
+        Palette indices of wall, panes and doors, and the instance.
+    recess_m : float64 (walls,)
+        Depth of the reveals [m].
+    """
+
+    start: Float64[np.ndarray, "walls 2"]
+    end: Float64[np.ndarray, "walls 2"]
+    floor_m: Float64[np.ndarray, "walls"]
+    foundation_m: Float64[np.ndarray, "walls"]
+    top_m: Float64[np.ndarray, "walls"]
+    storeys: Int64[np.ndarray, "walls"]
+    first_storey_m: Float64[np.ndarray, "walls"]
+    storey_m: Float64[np.ndarray, "walls"]
+    columns: Int64[np.ndarray, "walls"]
+    window_share: Float64[np.ndarray, "walls"]
+    sill_m: Float64[np.ndarray, "walls"]
+    head_m: Float64[np.ndarray, "walls"]
+    first_sill_m: Float64[np.ndarray, "walls"]
+    first_head_m: Float64[np.ndarray, "walls"]
+    surface: Int64[np.ndarray, "walls"]
+    glass: Int64[np.ndarray, "walls"]
+    door: Int64[np.ndarray, "walls"]
+    object: Int64[np.ndarray, "walls"]
+    recess_m: Float64[np.ndarray, "walls"]
+
+    def cells(self) -> tuple[Int64[np.ndarray, "cells"], Int64[np.ndarray, "cells"], Int64[np.ndarray, "cells"]]:
+        """Wall, column and storey of every cell of the window grids, in the order `facades` expects."""
+        return ragged_grid(self.columns, self.storeys)
+
+
+@dataclass(frozen=True, eq=False)
+class _Lattice:
+    """Grid points of all walls."""
+
+    vertices: Float64[np.ndarray, "points 3"]
+    site: Int64[np.ndarray, "points"]
+    site_position: Float64[np.ndarray, "sites 3"]
+    site_normal: Float64[np.ndarray, "sites 3"]
+
+
+def facades(walls: Walls, filling: Int64[np.ndarray, "cells"]) -> Part:
+    """Build all walls.
+
+    Parameters
+    ----------
+    walls : Walls
+    filling : int64 (cells,)
+        `BLANK`, `WINDOW` or `DOOR` for every cell of `Walls.cells`. Doors are honoured on the ground floor and reach
+        from the floor to the window's head; they lie flush.
+    """
+    normal = _outward(walls)
+    lattice = _lattice(walls, normal)
+    columns, rows = 2 * walls.columns + 2, 2 * walls.storeys + 3
+    item, i, j, quads = lattice_quads(columns, rows)
+    kind = _quad_filling(walls, filling, item, i, j)
+    pane = (kind == WINDOW) & (j >= 2) & (j % 2 == 0)
+    door = (kind == DOOR) & (j <= 2)
+    semantic = np.where(door, int(Semantic.DOOR), int(Semantic.WALL))
+    surface = np.where(door, walls.door[item], walls.surface[item])
+    return _assemble(walls, normal, lattice, item, quads, pane, door, semantic, surface)
+
+
+def _outward(walls: Walls) -> np.ndarray:
+    along = walls.end - walls.start
+    along = along / np.linalg.norm(along, axis=1)[:, None]
+    return np.column_stack([along[:, 1], -along[:, 0], np.zeros(len(along))])
+
+
+def _column_lines(walls: Walls, item: np.ndarray, i: np.ndarray) -> np.ndarray:
+    """Position of grid line i along the wall, 0..1: wall ends and window jambs."""
+    count = walls.columns[item]
+    share = walls.window_share[item]
+    k = (i - 1) // 2
+    side = np.where(i % 2 == 1, (1 - share) / 2, (1 + share) / 2)
+    return np.where(i == 0, 0.0, np.where(i == 2 * count + 1, 1.0, (k + side) / count))
+
+
+def _row_lines(walls: Walls, item: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """Height of grid line j above the ground floor [m]: foundation, plinth, sill and head of each storey, top."""
+    storeys = walls.storeys[item]
+    k = (j - 2) // 2
+    floor = np.where(k > 0, walls.first_storey_m[item] + (k - 1) * walls.storey_m[item], 0.0)
+    sill = np.where(k > 0, walls.sill_m[item], walls.first_sill_m[item])
+    head = np.where(k > 0, walls.head_m[item], walls.first_head_m[item])
+    height = floor + np.where(j % 2 == 0, sill, head)
+    plinth = np.minimum(_PLINTH_M, 0.5 * walls.first_sill_m[item])
+    height = np.where(j == 0, -walls.foundation_m[item], np.where(j == 1, plinth, height))
+    return np.where(j == 2 * storeys + 2, (walls.top_m - walls.floor_m)[item], height)
+
+
+def _lattice(walls: Walls, normal: np.ndarray) -> _Lattice:
+    columns, rows = 2 * walls.columns + 2, 2 * walls.storeys + 3
+    item, i, j = ragged_grid(columns, rows)
+    vertices = _on_wall(walls, item, _column_lines(walls, item, i), _row_lines(walls, item, j))
+    site_columns, site_rows = (walls.columns + 1) // 2 + 1, walls.storeys + 2
+    row = np.minimum(np.where(j <= 2, (j + 1) // 2, 2 + (j - 3) // 2), site_rows[item] - 1)
+    site = offsets(site_columns * site_rows)[item] + row * site_columns[item] + (i // 2 + 1) // 2
+
+    s_item, s_i, s_j = ragged_grid(site_columns, site_rows)
+    x = np.minimum(2 * s_i / walls.columns[s_item], 1.0)
+    x = x + np.where(s_i == 0, 0.25, np.where(s_i == site_columns[s_item] - 1, -0.25, 0.0)) / walls.columns[s_item]
+    low, high = np.maximum(2 * s_j - 1, 0), 2 * s_j
+    z = (_row_lines(walls, s_item, low) + _row_lines(walls, s_item, high)) / 2
+    z = np.where((s_j == 0), 0.15, z)
+    return _Lattice(vertices, site, _on_wall(walls, s_item, x, z), normal[s_item])
+
+
+def _on_wall(walls: Walls, item: np.ndarray, x: np.ndarray, z: np.ndarray) -> np.ndarray:
+    xy = walls.start[item] + (walls.end - walls.start)[item] * x[:, None]
+    return np.column_stack([xy, walls.floor_m[item] + z])
+
+
+def _quad_filling(walls: Walls, filling: np.ndarray, item: np.ndarray, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+    """Filling of the window cell a quad lies in; piers and spandrels are blank, the strip below a door is the door."""
+    storey = np.clip((j - 2) // 2, 0, walls.storeys[item] - 1)
+    column = np.clip((i - 1) // 2, 0, walls.columns[item] - 1)
+    cell = offsets(walls.columns * walls.storeys)[item] + storey * walls.columns[item] + column
+    return np.where(i % 2 == 1, filling[cell], BLANK)
+
+
+def _assemble(
+    walls: Walls,
+    normal: np.ndarray,
+    lattice: _Lattice,
+    item: np.ndarray,
+    quads: np.ndarray,
+    pane: Bool[np.ndarray, "quads"],
+    door: Bool[np.ndarray, "quads"],
+    semantic: np.ndarray,
+    surface: np.ndarray,
+) -> Part:
+    """Solid quads, then reveals, then panes; panes and doors have one site each."""
+    solid = ~pane
+    opening = quads[pane]
+    owner = item[pane]
+    inner = lattice.vertices[opening] - normal[owner][:, None, :] * walls.recess_m[owner][:, None, None]
+    count = len(opening)
+    base = len(lattice.vertices)
+    inner_id = base + np.arange(4 * count).reshape(-1, 4)
+    ring = np.array([1, 2, 3, 0])
+    after = opening[:, ring]
+    reveals = np.stack([opening, after, inner_id[:, ring], inner_id], axis=2).reshape(-1, 4)
+    reveal_site = lattice.site[np.stack([opening, after, after, opening], axis=2)].reshape(-1, 4)
+
+    site_count = len(lattice.site_position)
+    door_index = np.cumsum(door) - 1
+    door_count = int(door.sum())
+    quad_site = lattice.site[quads]
+    quad_site = np.where(door[:, None], (site_count + door_index)[:, None], quad_site)
+    pane_site = np.repeat((site_count + door_count + np.arange(count))[:, None], 4, axis=1)
+
+    all_quads = np.concatenate([quads[solid], reveals, inner_id])
+    all_sites = np.concatenate([quad_site[solid], reveal_site, pane_site])
+    wall_of = np.concatenate([item[solid], np.repeat(owner, 4), owner])
+    labels = np.concatenate([semantic[solid], np.full(4 * count, int(Semantic.WALL)), np.full(count, int(Semantic.WINDOW))])
+    skins = np.concatenate([surface[solid], walls.surface[np.repeat(owner, 4)], walls.glass[owner]])
+    vertices = np.concatenate([lattice.vertices, inner.reshape(-1, 3)])
+    door_middle = lattice.vertices[quads[door]].mean(axis=1)
+    return Part(
+        vertices=vertices,
+        faces=quads_to_triangles(all_quads),
+        surface=np.repeat(skins, 2),
+        semantic=np.repeat(labels, 2),
+        object=np.repeat(walls.object[wall_of], 2),
+        corner_site=quads_to_triangles(all_sites),
+        site_position=np.concatenate([lattice.site_position, door_middle, inner.mean(axis=1)]),
+        site_normal=np.concatenate([lattice.site_normal, normal[item[door]], normal[owner]]),
+        site_standoff=np.full(site_count + door_count + count, STANDOFF_M),
+    )

@@ -1,0 +1,191 @@
+"""The ground: a conforming triangulation draped over a relief, with steps (kerbs, banks) where regions change level.
+
+A ray from above can never slip through: plan neighbours share vertices, and where their levels differ the gap is closed by
+vertical quads between duplicated vertices.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from jaxtyping import Float64, Int64
+
+from scenegen.geometry.part import STANDOFF_M, Part, concatenate, face_normals
+from scenegen.geometry.patch import quads_to_triangles
+from scenegen.geometry.planar import Triangulation
+
+_NUDGE_M = 0.04
+"""How far sites on a region's outline move inwards, so that they do not lie in the plane of a wall or kerb."""
+
+Relief = Callable[[Float64[np.ndarray, "points 2"]], Float64[np.ndarray, "points"]]
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """A piece of the ground plan.
+
+    Attributes
+    ----------
+    outline : shapely.Polygon
+    surface, semantic, object : int
+        Labels of its faces.
+    level_m : float
+        Height above the relief [m].
+    hole : bool
+        True where there is no ground at all: under a building.
+    """
+
+    outline: shapely.Polygon
+    surface: int
+    semantic: int
+    object: int
+    level_m: float = 0.0
+    hole: bool = False
+
+
+def drape(plan: Triangulation, regions: Sequence[Region], relief: Relief) -> Part:
+    """Lift a triangulated plan to the relief.
+
+    Vertices are shared by regions of one level; sites by regions that agree in surface and object.
+
+    Parameters
+    ----------
+    plan : Triangulation
+        Of the outlines of `regions`, in the same order.
+    regions : sequence of Region
+    relief : callable
+        Height [m] at plan points.
+    """
+    table = _Table.of(regions)
+    keep = (plan.region >= 0) & ~table.hole[plan.region]
+    triangles, region = plan.triangles[keep], plan.region[keep]
+    height = relief(plan.points)
+    flat = _surface(plan.points, height, triangles, region, table)
+    steps = _steps(plan.points, height, triangles, region, table)
+    return concatenate([flat, *steps])
+
+
+@dataclass(frozen=True, eq=False)
+class _Table:
+    """Columns of the regions."""
+
+    surface: Int64[np.ndarray, "regions"]
+    semantic: Int64[np.ndarray, "regions"]
+    object: Int64[np.ndarray, "regions"]
+    level: Float64[np.ndarray, "regions"]
+    hole: np.ndarray
+
+    @staticmethod
+    def of(regions: Sequence[Region]) -> _Table:
+        return _Table(
+            np.array([r.surface for r in regions], np.int64),
+            np.array([r.semantic for r in regions], np.int64),
+            np.array([r.object for r in regions], np.int64),
+            np.array([r.level_m for r in regions], np.float64),
+            np.array([r.hole for r in regions], bool),
+        )
+
+
+def _surface(
+    points: np.ndarray, height: np.ndarray, triangles: np.ndarray, region: np.ndarray, table: _Table
+) -> Part:
+    levels, level_index = np.unique(table.level, return_inverse=True)
+    corner_level = np.repeat(level_index[region], 3)
+    pairs = triangles.ravel() * len(levels) + corner_level
+    vertex, faces = np.unique(pairs, return_inverse=True)
+    xy, z = points[vertex // len(levels)], height[vertex // len(levels)] + levels[vertex % len(levels)]
+    vertices = np.column_stack([xy, z])
+    faces = faces.reshape(-1, 3)
+
+    kinds, kind = np.unique(
+        np.stack([table.surface, table.object, level_index], axis=1), axis=0, return_inverse=True
+    )
+    codes = triangles.ravel() * len(kinds) + np.repeat(kind.ravel()[region], 3)
+    site, corner = np.unique(codes, return_inverse=True)
+    corner_site = corner.reshape(-1, 3)
+    position, normal = _site_frame(vertices, faces, corner_site, len(site))
+    return Part(
+        vertices=vertices,
+        faces=faces,
+        surface=table.surface[region],
+        semantic=table.semantic[region],
+        object=table.object[region],
+        corner_site=corner_site,
+        site_position=position,
+        site_normal=normal,
+        site_standoff=np.full(len(site), STANDOFF_M),
+    )
+
+
+def _site_frame(
+    vertices: np.ndarray, faces: np.ndarray, corner_site: np.ndarray, count: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Position (nudged towards the faces the site stands for) and area-weighted normal of ground sites."""
+    normals, area = face_normals(vertices, faces)
+    corners = corner_site.ravel()
+    weight = np.repeat(area, 3)
+    position = np.empty((count, 3))
+    position[corners] = vertices[faces.ravel()]
+    total = np.maximum(np.bincount(corners, weight, count), 1e-12)
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        columns = [np.bincount(corners, weight * np.repeat(values[:, k], 3), count) / total for k in range(3)]
+        return np.stack(columns, axis=1)
+
+    normal = mean(normals)
+    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    pull = mean(vertices[faces].mean(axis=1)) - position
+    length = np.linalg.norm(pull, axis=1)
+    return position + pull * np.minimum(_NUDGE_M / np.maximum(length, 1e-9), 0.5)[:, None], normal
+
+
+def _steps(
+    points: np.ndarray, height: np.ndarray, triangles: np.ndarray, region: np.ndarray, table: _Table
+) -> list[Part]:
+    """Vertical quads along edges between regions of different level; they belong to the higher region."""
+    start = triangles[:, [0, 1, 2]].ravel()
+    end = triangles[:, [1, 2, 0]].ravel()
+    owner = np.repeat(region, 3)
+    code = np.minimum(start, end) * len(points) + np.maximum(start, end)
+    order = np.argsort(code, kind="stable")
+    pair = code[order][1:] == code[order][:-1]
+    one, two = order[:-1][pair], order[1:][pair]
+    rise = table.level[owner[one]] - table.level[owner[two]]
+    high = np.concatenate([one[rise > 1e-6], two[rise < -1e-6]])
+    low = np.concatenate([two[rise > 1e-6], one[rise < -1e-6]])
+    if not len(high):
+        return []
+    a, b = start[high], end[high]
+    top, bottom = table.level[owner[high]], table.level[owner[low]]
+    corners = np.stack(
+        [
+            np.column_stack([points[a], height[a] + bottom]),
+            np.column_stack([points[b], height[b] + bottom]),
+            np.column_stack([points[b], height[b] + top]),
+            np.column_stack([points[a], height[a] + top]),
+        ],
+        axis=1,
+    )
+    return [_step_part(corners, owner[high], table)]
+
+
+def _step_part(corners: np.ndarray, region: np.ndarray, table: _Table) -> Part:
+    """Kerb quads, one site each: a kerb is too low for more."""
+    count = len(corners)
+    faces = quads_to_triangles(np.arange(4 * count).reshape(-1, 4))
+    vertices = corners.reshape(-1, 3)
+    normals, _ = face_normals(vertices, faces)
+    return Part(
+        vertices=vertices,
+        faces=faces,
+        surface=np.repeat(table.surface[region], 2),
+        semantic=np.repeat(table.semantic[region], 2),
+        object=np.repeat(table.object[region], 2),
+        corner_site=np.repeat(np.repeat(np.arange(count), 2)[:, None], 3, axis=1),
+        site_position=corners.mean(axis=1),
+        site_normal=normals[::2],
+        site_standoff=np.full(count, STANDOFF_M),
+    )

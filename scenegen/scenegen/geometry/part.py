@@ -1,0 +1,80 @@
+"""A part: some triangles with what they are and where their heat lives; the builder merges parts into a world."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from jaxtyping import Float64, Int64
+
+STANDOFF_M = 0.005
+"""Where exposure rays of an ordinary facet start [m]."""
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Triangles and their thermal sites, indices local to the part.
+
+    Attributes
+    ----------
+    vertices : float64 (vertices, 3)
+        [m], ENU.
+    faces : int64 (faces, 3)
+        Counter-clockwise seen from outside.
+    surface, semantic, object : int64 (faces,)
+        Palette index, `scenegen.classes.Semantic` and instance id of each face.
+    corner_site : int64 (faces, 3)
+        Site of each corner.
+    site_position, site_normal : float64 (sites, 3)
+        [m] and outward unit vectors.
+    site_standoff : float64 (sites,)
+        [m], see `scenegen.world.Sites`.
+    """
+
+    vertices: Float64[np.ndarray, "vertices 3"]
+    faces: Int64[np.ndarray, "faces 3"]
+    surface: Int64[np.ndarray, "faces"]
+    semantic: Int64[np.ndarray, "faces"]
+    object: Int64[np.ndarray, "faces"]
+    corner_site: Int64[np.ndarray, "faces 3"]
+    site_position: Float64[np.ndarray, "sites 3"]
+    site_normal: Float64[np.ndarray, "sites 3"]
+    site_standoff: Float64[np.ndarray, "sites"]
+
+    def labelled(self, surface: int | None = None, semantic: int | None = None, object: int | None = None) -> Part:
+        """The same geometry with one surface, class or instance for all faces."""
+        count = len(self.faces)
+        return replace(
+            self,
+            surface=self.surface if surface is None else np.full(count, int(surface)),
+            semantic=self.semantic if semantic is None else np.full(count, int(semantic)),
+            object=self.object if object is None else np.full(count, int(object)),
+        )
+
+
+def concatenate(parts: Sequence[Part]) -> Part:
+    """Merge parts in the order given."""
+    vertex = np.cumsum([0, *(len(p.vertices) for p in parts)])
+    site = np.cumsum([0, *(len(p.site_position) for p in parts)])
+    return Part(
+        vertices=np.concatenate([p.vertices for p in parts]),
+        faces=np.concatenate([p.faces + offset for p, offset in zip(parts, vertex[:-1], strict=True)]),
+        surface=np.concatenate([p.surface for p in parts]),
+        semantic=np.concatenate([p.semantic for p in parts]),
+        object=np.concatenate([p.object for p in parts]),
+        corner_site=np.concatenate([p.corner_site + offset for p, offset in zip(parts, site[:-1], strict=True)]),
+        site_position=np.concatenate([p.site_position for p in parts]),
+        site_normal=np.concatenate([p.site_normal for p in parts]),
+        site_standoff=np.concatenate([p.site_standoff for p in parts]),
+    )
+
+
+def face_normals(
+    vertices: Float64[np.ndarray, "vertices 3"], faces: Int64[np.ndarray, "faces 3"]
+) -> tuple[Float64[np.ndarray, "faces 3"], Float64[np.ndarray, "faces"]]:
+    """Unit normals and areas [m^2]; a face without area has a zero normal."""
+    a, b, c = (vertices[faces[:, k]] for k in range(3))
+    cross = np.cross(b - a, c - a)
+    length = np.linalg.norm(cross, axis=1)
+    return cross / np.maximum(length, 1e-300)[:, None], 0.5 * length

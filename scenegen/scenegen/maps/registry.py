@@ -1,0 +1,83 @@
+"""All map families. A new one is a folder and a line here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from scenegen.foundation.errors import InputError, nearest
+from scenegen.foundation.section import Section
+from scenegen.maps.city.city import build_city
+from scenegen.maps.city.knobs import CityKnobs
+from scenegen.world import World
+
+
+@dataclass(frozen=True)
+class MapFamily:
+    """A kind of world.
+
+    Attributes
+    ----------
+    name : str
+        As users write it.
+    description : str
+        One line for listings.
+    knobs : type of Section
+        What can be turned.
+    build : callable
+        Knobs and generator to world.
+    """
+
+    name: str
+    description: str
+    knobs: type[Section]
+    build: Callable[[Any, np.random.Generator], World]
+
+
+_FAMILIES = (
+    MapFamily("city", "dense streets, blocks and parks of a European or American town", CityKnobs, build_city),
+)
+
+MAPS: Mapping[str, MapFamily] = MappingProxyType({family.name: family for family in _FAMILIES})
+"""All map families by name."""
+
+
+def map_family(name: str) -> MapFamily:
+    """Look a map family up.
+
+    Raises
+    ------
+    InputError
+        If there is none of this name; names the nearest one.
+    """
+    try:
+        return MAPS[name]
+    except KeyError:
+        raise InputError(f"unknown map '{name}'{nearest(name, MAPS)}") from None
+
+
+def build_world(map: str, knobs: Section, rng: np.random.Generator) -> World:
+    """Build a world.
+
+    Parameters
+    ----------
+    map : str
+        Name of the family.
+    knobs : Section
+        Of the family's own class.
+    rng : numpy.random.Generator
+        The world is a pure function of map, knobs and the state of this generator.
+
+    Raises
+    ------
+    InputError
+        If the map is unknown or the knobs belong to another family.
+    """
+    family = map_family(map)
+    if not isinstance(knobs, family.knobs):
+        raise InputError(f"map '{map}' takes {family.knobs.__name__}, not {type(knobs).__name__}")
+    return family.build(knobs, rng)
