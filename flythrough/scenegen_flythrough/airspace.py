@@ -5,14 +5,18 @@ The coarse map only proposes. It may miss a twig and may call a free gap occupie
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
-from jaxtyping import Bool, Float64, Int64, UInt8, UInt64
+from jaxtyping import Bool, Float64, Int64, UInt8, UInt32, UInt64
 
 from scenegen.world import World
 from scenegen_flythrough.clearance import MeshProximity
 
 _LAYER_M = 2.0  # 64 layers of 2 m: heights of 0 to 128 m above ground in one 64-bit word
+_GROUND_M = 0.5  # what reaches no higher above the ground is ground
 _MAX_CELLS = 1_500_000
+_SAMPLES_AT_ONCE = 500_000
 ROOM_CELLS = 10
 """Distances to the nearest obstacle are counted up to this many cells."""
 
@@ -97,7 +101,7 @@ class Airspace:
             column, row = self._cell(samples[:, :2])
             layer = np.floor(samples[:, 2] / _LAYER_M)
             keep = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
-            keep &= (samples[:, 2] > 0.5) & (layer < 64)  # the ground itself is height, not an obstacle
+            keep &= (samples[:, 2] > _GROUND_M) & (layer < 64)
             occupied[row[keep], column[keep], layer[keep].astype(np.int64)] = True
         return np.packbits(occupied, axis=2, bitorder="little").view("<u8")[:, :, 0].astype(np.uint64)
 
@@ -114,22 +118,46 @@ def _grown(blocked: Bool[np.ndarray, "rows columns"], *, square: bool) -> Bool[n
 
 
 def _inner_points(
-    points: Float64[np.ndarray, "vertices 3"], faces: np.ndarray, step_m: float
-) -> list[Float64[np.ndarray, "samples 3"]]:
-    """Points inside triangles longer than a step, about a step apart; triangles on the ground are left out."""
-    low = points[:, 2] <= 0.5
+    points: Float64[np.ndarray, "vertices 3"], faces: UInt32[np.ndarray, "faces 3"], step_m: float
+) -> Iterator[Float64[np.ndarray, "samples 3"]]:
+    """Points inside triangles longer than a step, about a step apart; triangles on the ground are left out.
+
+    Each triangle is covered by rows parallel to its longest side, so that a tall pane costs its area, not its height
+    squared.
+    """
+    low = points[:, 2] <= _GROUND_M
     standing = faces[~(low[faces[:, 0]] & low[faces[:, 1]] & low[faces[:, 2]])]
-    a, b, c = (points[standing[:, k]] for k in range(3))
-    longest = np.sqrt(np.maximum(_length2(b - a), np.maximum(_length2(c - b), _length2(a - c))))
-    parts = np.minimum(np.ceil(longest / step_m), 256.0).astype(np.int64)
-    out = []
-    for n in np.unique(parts[parts > 1]).tolist():
-        pick = parts == n
-        i, j = (index.ravel() for index in np.meshgrid(np.arange(n + 1), np.arange(n + 1), indexing="ij"))
-        i, j = i[i + j <= n] / n, j[i + j <= n] / n
-        weights = np.stack([1.0 - i - j, i, j], axis=1)
-        out.append(np.einsum("wk,ktc->twc", weights, np.stack([a[pick], b[pick], c[pick]])).reshape(-1, 3))
-    return out
+    sides = np.stack(
+        [_length2(points[standing[:, k - 2]] - points[standing[:, k]]) for k in range(3)], axis=1
+    )
+    base = np.argmax(sides, axis=1)
+    longest = np.sqrt(np.take_along_axis(sides, base[:, None], axis=1)[:, 0])
+    large = longest > step_m
+    standing, base, longest = standing[large], base[large], longest[large]
+    a, b, c = (points[np.take_along_axis(standing, (base[:, None] + k) % 3, axis=1)[:, 0]] for k in range(3))
+    width = np.sqrt(_length2(np.cross(b - a, c - a))) / longest
+    columns = np.minimum(np.ceil(longest / step_m), 1024.0).astype(np.int64) + 1
+    rows = np.minimum(np.ceil(width / step_m), 1024.0).astype(np.int64) + 1
+    counts = columns * rows
+    ends = np.cumsum(counts)
+    starts = ends - counts
+    for first, last in _runs(ends, _SAMPLES_AT_ONCE):
+        pick = np.repeat(np.arange(first, last), counts[first:last])
+        index = np.arange(len(pick)) - np.repeat(starts[first:last] - starts[first], counts[first:last])
+        row, column = np.divmod(index, columns[pick])
+        v = (row / (rows[pick] - 1))[:, None]
+        u = (column / (columns[pick] - 1))[:, None] * (1.0 - v)
+        yield a[pick] + u * (b - a)[pick] + v * (c - a)[pick]
+
+
+def _runs(ends: Int64[np.ndarray, "items"], size: int) -> Iterator[tuple[int, int]]:
+    """Consecutive ranges of items whose counts (cumulative: `ends`) add up to about `size`."""
+    first = 0
+    while first < len(ends):
+        done = int(ends[first - 1]) if first else 0
+        last = max(int(np.searchsorted(ends, done + size)), first + 1)
+        yield first, last
+        first = last
 
 
 def _length2(v: Float64[np.ndarray, "n 3"]) -> Float64[np.ndarray, "n"]:

@@ -61,15 +61,13 @@ def fly(
         intent = _draw_intent(knobs, intent_rng)
         room = airspace.room(intent.height_m, max(knobs.clearance_m, 0.1 * intent.height_m) + 1.0)
         for batch_rng in batch_rngs:
-            paths = fly_batch(airspace, room, knobs, intent, (_BATCH, frames + 2), batch_rng)
-            if len(paths) == 0:
-                rejected += _BATCH
-                reasons[1] += _BATCH
-                continue
+            left = min(_BATCH, knobs.max_draws - rejected)
+            paths = fly_batch(airspace, room, knobs, intent, (_BATCH, frames + 2), batch_rng)[:left]
             index = _first_proven(airspace, knobs, paths, reasons)
             if index is not None:
                 return _trajectory(airspace, knobs, intent, paths[index], rejected + index)
-            rejected += len(paths)
+            rejected += left
+            reasons[1] += left - len(paths)  # no free place to start from at this height
     raise RejectedDrawError(_given_up(world, knobs, frames, rejected, reasons))
 
 

@@ -118,9 +118,14 @@ def _integrate(
         flat = np.stack([np.cos(heading), np.sin(heading)], axis=1)
         error = ground.at(here[:, :2] + ahead_m * flat) + target[:, k] - here[:, 2]
         wanted_slope = np.clip(error / (2.5 * ahead_m), -agility.climb, agility.climb)
-        wanted_rate = np.clip((wanted_slope - slope) / (0.8 * ahead_m), -agility.curvature, agility.curvature)
+        wanted_rate = np.clip(
+            (wanted_slope - slope) / (0.8 * ahead_m),
+            -_braking(agility.climb + slope, 0.8 * bend, step),
+            _braking(agility.climb - slope, 0.8 * bend, step),
+        )
+        wanted_rate = np.clip(wanted_rate, -agility.curvature, agility.curvature)
         slope_rate = slope_rate + np.clip(wanted_rate - slope_rate, -bend * step, bend * step)
-        slope = np.clip(slope + slope_rate * step, -agility.climb, agility.climb)
+        slope = slope + slope_rate * step
         middle = heading + 0.5 * curvature * step
         heading = heading + curvature * step
         chord = np.stack(
@@ -128,6 +133,11 @@ def _integrate(
         )
         path[:, k + 1] = here + step * chord
     return path
+
+
+def _braking(left: Float64[np.ndarray, "batch"], bend: float, step: float) -> Float64[np.ndarray, "batch"]:
+    """Largest rate that can still be ramped down to zero, a step at a time, before `left` is used up."""
+    return np.asarray(bend * (np.sqrt(0.25 * step**2 + 2.0 * np.maximum(left, 0.0) / bend) - 0.5 * step))
 
 
 def _best_turn(

@@ -36,7 +36,7 @@ def dense_distance(start: np.ndarray, end: np.ndarray, triangle: np.ndarray) -> 
     best = np.inf
     for x in (np.array([0.5, 1 / 3, 1 / 3]), np.array([0.0, 0.0, 0.0]), np.array([1.0, 0.5, 0.5])):
         y, momentum = x.copy(), 1.0
-        for _ in range(3000):
+        for _ in range(600):
             step = y - basis.T @ (offset + basis @ y) / lipschitz
             new = np.concatenate([np.clip(step[:1], 0, 1), onto_simplex(step[1:])])
             following = (1 + np.sqrt(1 + 4 * momentum**2)) / 2

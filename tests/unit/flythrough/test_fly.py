@@ -1,0 +1,226 @@
+"""Flights through box cities: everything a trajectory promises, judged against the boxes themselves."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from scenegen.foundation.errors import InputError, RejectedDrawError
+from scenegen.foundation.rng import stream
+from scenegen.world import World
+from scenegen_flythrough.airspace import Airspace
+from scenegen_flythrough.fly import fly
+from scenegen_flythrough.knobs import FlightKnobs
+from scenegen_flythrough.steering import GRAVITY_MPS2, Agility
+from scenegen_flythrough.trajectory import Trajectory
+
+FLIGHTS = 64
+FRAMES = 65
+
+
+def knobs_of(index: int) -> FlightKnobs:
+    """A spread of wishes: default, low and fast, low and slow, high, fine steps, coarse steps."""
+    wishes: tuple[dict[str, object], ...] = (
+        {},
+        {"height_m": (3.0, 6.0), "speed_mps": 22.2},
+        {"height_m": 4.0, "speed_mps": 3.0, "clearance_m": 0.4},
+        {"height_m": (50.0, 70.0), "climb_deg": 5.0},
+        {"spacing_m": 0.25, "pitch_deg": (-45.0, -30.0)},
+        {"spacing_m": 2.5, "bank_deg": 20.0},
+    )
+    return FlightKnobs.model_validate(wishes[index % len(wishes)])
+
+
+@pytest.fixture(scope="module")
+def flights(city_air: Airspace, hills_air: Airspace) -> list[tuple[World, FlightKnobs, Trajectory]]:
+    out = []
+    for index in range(FLIGHTS):
+        airspace, knobs = (city_air, hills_air)[index // 6 % 2], knobs_of(index)
+        out.append(
+            (airspace.world, knobs, fly(airspace.world, knobs, FRAMES, stream(7, "flight", index), airspace))
+        )
+    return out
+
+
+def positions(trajectory: Trajectory) -> np.ndarray:
+    return trajectory.world_from_camera[:, :3, 3]
+
+
+def solid_distance(boxes: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Distance to solid axis-aligned boxes, by the closed form; zero inside."""
+    gap = np.maximum(boxes[None, :, 0] - points[:, None], points[:, None] - boxes[None, :, 1])
+    return np.linalg.norm(np.maximum(gap, 0.0), axis=2).min(axis=1)
+
+
+def test_one_pose_more_at_both_ends_and_time_from_the_first_frame(flights) -> None:
+    for _, knobs, trajectory in flights:
+        assert trajectory.world_from_camera.shape == (FRAMES + 2, 4, 4)
+        assert trajectory.time_s[1] == 0.0
+        np.testing.assert_allclose(
+            np.diff(trajectory.time_s), knobs.spacing_m / trajectory.speed_mps, rtol=1e-12
+        )
+        assert knobs.speed_mps[0] <= trajectory.speed_mps <= knobs.speed_mps[1]
+        assert trajectory.rejected >= 0
+
+
+def test_equal_spacing(flights) -> None:
+    for _, knobs, trajectory in flights:
+        steps = np.linalg.norm(np.diff(positions(trajectory), axis=0), axis=1)
+        np.testing.assert_allclose(steps, knobs.spacing_m, rtol=0, atol=1e-6)
+
+
+def test_poses_are_rotations_in_the_camera_convention(flights) -> None:
+    for _, _, trajectory in flights:
+        pose = trajectory.world_from_camera
+        rotation = pose[:, :3, :3]
+        eye = np.broadcast_to(np.eye(3), rotation.shape)
+        np.testing.assert_allclose(rotation.transpose(0, 2, 1) @ rotation, eye, atol=1e-12)
+        np.testing.assert_allclose(np.linalg.det(rotation), 1.0, atol=1e-12)  # right-handed
+        np.testing.assert_array_equal(pose[:, 3], np.broadcast_to([0.0, 0.0, 0.0, 1.0], (len(pose), 4)))
+        assert (rotation[:, 2, 1] < 0).all()  # y points down
+        course = (pose[2:, :3, 3] - pose[:-2, :3, 3])[:, :2]
+        course /= np.linalg.norm(course, axis=1, keepdims=True)
+        assert ((rotation[1:-1, :2, 2] * course).sum(axis=1) > 0).all()  # z looks ahead
+        assert np.abs((rotation[1:-1, :2, 0] * course).sum(axis=1)).max() < np.sin(
+            np.radians(12.0)
+        )  # x to the side
+
+
+def test_tilt_of_the_airframe_is_limited(flights) -> None:
+    """Undo the mount: the airframe's vertical is camera -y turned back about x by some angle within the knob."""
+    for _, knobs, trajectory in flights:
+        rotation = trajectory.world_from_camera[:, :3, :3]
+        roll = np.degrees(np.arcsin(np.abs(rotation[:, 2, 0])))  # how far camera x leaves the horizon
+        assert roll.max() <= knobs.bank_deg + 1e-9
+        look = np.degrees(np.arcsin(rotation[:, 2, 2]))
+        assert look.max() <= knobs.pitch_deg[1] + knobs.bank_deg + 1e-9
+        assert look.min() >= knobs.pitch_deg[0] - knobs.bank_deg - 1e-9
+
+
+def test_path_is_smooth(flights) -> None:
+    """Curvature within the limits and changing only gradually; no pose jumps in attitude."""
+    for _, knobs, trajectory in flights:
+        path, step = positions(trajectory), knobs.spacing_m
+        agility = Agility.of(knobs, trajectory.speed_mps)
+        bend = np.diff(path, 2, axis=0) / step**2
+        assert np.linalg.norm(bend, axis=1).max() <= 1.5 * agility.curvature  # turn and climb together
+        assert (
+            np.linalg.norm(np.diff(bend, axis=0), axis=1).max()
+            <= 2.0 * agility.onset * step + agility.curvature**2 * step
+        )
+        sideways = trajectory.speed_mps**2 * np.linalg.norm(bend[:, :2], axis=1)
+        assert sideways.max() <= GRAVITY_MPS2 * np.tan(np.radians(knobs.bank_deg)) + 1e-9
+        slope = np.abs(np.diff(path[:, 2])) / step
+        assert slope.max() <= np.sin(np.radians(knobs.climb_deg)) + 1e-9
+        axes = trajectory.world_from_camera[:, :3, :3]
+        turned = np.degrees(np.arccos(np.clip((np.einsum("nij,nij->n", axes[1:], axes[:-1]) - 1) / 2, -1, 1)))
+        assert turned.max() < 25.0 * max(step, 1.0)
+
+
+def test_height_above_ground_stays_in_range(flights) -> None:
+    for world, knobs, trajectory in flights:
+        path = positions(trajectory)
+        height = path[:, 2] - world.ground.at(path[:, :2])
+        assert height.min() >= knobs.height_m[0] - knobs.height_slack_m
+        assert height.max() <= knobs.height_m[1] + knobs.height_slack_m
+        assert (path >= world.flight_box_m[0]).all()
+        assert (path <= world.flight_box_m[1]).all()
+
+
+def test_clearance_holds_along_the_whole_path(flights, city, hills) -> None:
+    """2 cm samples of every chord against the solid boxes: free of them, never inside, and `clearance_m` is true."""
+    for world, knobs, trajectory in flights:
+        boxes = (city if world is city.world else hills).boxes
+        path = positions(trajectory)
+        count = int(np.ceil(knobs.spacing_m / 0.02))
+        share = (np.arange(count) / count)[:, None]
+        points = np.concatenate([a + share * (b - a) for a, b in pairwise(path)])
+        nearest = min(solid_distance(boxes, part).min() for part in np.array_split(points, 20))
+        assert trajectory.clearance_m >= knobs.clearance_m
+        assert nearest >= trajectory.clearance_m - 1e-5  # float32 corners against the exact boxes
+
+
+def test_clearance_is_the_smallest_distance_to_box_or_ground(city, city_air: Airspace) -> None:
+    """Over flat ground the truth is a closed form: the lower of height and box distance, at finely sampled points."""
+    for index in range(12):
+        trajectory = fly(city.world, FlightKnobs(), 33, stream(9, index), city_air)
+        path = positions(trajectory)
+        share = np.linspace(0, 1, 101)[:, None]
+        points = np.concatenate([a + share * (b - a) for a, b in pairwise(path)])
+        truth = min(
+            points[:, 2].min(), min(solid_distance(city.boxes, p).min() for p in np.array_split(points, 20))
+        )
+        assert trajectory.clearance_m == pytest.approx(truth, abs=2e-3)
+
+
+def test_heights_and_headings_spread(city, city_air: Airspace) -> None:
+    """Low flights are as likely as high ones although most free airspace is above the roofs."""
+    knobs = FlightKnobs(height_m=(4.0, 64.0))
+    flown = [positions(fly(city.world, knobs, 33, stream(3, i), city_air)) for i in range(80)]
+    heights = np.array([path[:, 2].mean() for path in flown])
+    counts = np.histogram(heights, bins=[4, 16, 28, 40, 52, 64])[0]
+    assert counts.min() >= 6, counts
+    course = np.array([np.arctan2(*(path[-1] - path[0])[[1, 0]]) for path in flown])
+    assert np.histogram(course, bins=8, range=(-np.pi, np.pi))[0].min() >= 2
+    starts = np.array([path[0, :2] for path in flown])
+    assert (np.ptp(starts, axis=0) > 150.0).all()
+
+
+def test_same_generator_same_bytes(city, city_air: Airspace) -> None:
+    first = fly(city.world, FlightKnobs(), 20, stream(1, "x"), city_air)
+    again = fly(city.world, FlightKnobs(), 20, stream(1, "x"), Airspace(city.world))
+    other = fly(city.world, FlightKnobs(), 20, stream(2, "x"), city_air)
+    assert first.world_from_camera.tobytes() == again.world_from_camera.tobytes()
+    assert (first.time_s.tobytes(), first.clearance_m, first.rejected) == (
+        again.time_s.tobytes(), again.clearance_m, again.rejected,
+    )  # fmt: skip
+    assert first.world_from_camera.tobytes() != other.world_from_camera.tobytes()
+
+
+def test_open_to_sky_knows_inside_from_outside(city, city_air: Airspace) -> None:
+    """1,000 poses of known truth, half of them inside closed boxes and below roofs."""
+    rng = np.random.default_rng(4)
+    houses = city.boxes[::2]
+    chosen = houses[rng.integers(len(houses), size=500)]
+    low, high = chosen[:, 0] + 0.6, chosen[:, 1] - 0.6
+    low[:, 2] = 1.0
+    inside = low + rng.random((500, 3)) * (high - low)
+    outside = np.empty((0, 3))
+    while len(outside) < 500:
+        draw = rng.uniform([-130, -130, 1.0], [130, 130, 80.0], (500, 3))
+        column = city.boxes.copy()
+        column[:, 1, 2] = np.maximum(column[:, 1, 2], 0.0)
+        outside = np.concatenate([outside, draw[solid_distance(column, draw) > 0.5]])[:500]
+    verdict = city_air.open_to_sky(np.concatenate([inside, outside]), 0.5)
+    assert not verdict[:500].any()
+    assert verdict[500:].all()
+
+
+def test_no_flight_starts_inside_a_closed_hall(build_city) -> None:
+    """A hall wide enough to fly in, and nothing else free: every draw is rejected, and the message says why."""
+    hall = build_city(np.array([[[-150.0, -150.0, -1.0], [150.0, 150.0, 60.0]]]))
+    knobs = FlightKnobs(height_m=20.0, max_draws=64)
+    with pytest.raises(RejectedDrawError, match="open sky"):
+        fly(hall.world, knobs, 16, stream(1), Airspace(hall.world))
+
+
+def test_too_tight_a_world_is_given_up_with_advice(build_city) -> None:
+    x, y = np.meshgrid(np.arange(-148.0, 148.0, 4.0), np.arange(-148.0, 148.0, 4.0))
+    low = np.stack([x.ravel(), y.ravel(), np.full(x.size, -1.0)], axis=1)
+    forest = build_city(np.stack([low, low + np.array([1.0, 1.0, 31.0])], axis=1))
+    knobs = FlightKnobs(height_m=(5.0, 10.0), clearance_m=1.8, max_draws=96)
+    with pytest.raises(RejectedDrawError, match=r"no free flight of 65 m .* 96 draws .* less clearance"):
+        fly(forest.world, knobs, 64, stream(1), Airspace(forest.world))
+
+
+def test_a_clip_needs_a_frame(city, city_air: Airspace) -> None:
+    with pytest.raises(InputError, match="at least one frame"):
+        fly(city.world, FlightKnobs(), 0, stream(1), city_air)
+    assert fly(city.world, FlightKnobs(), 1, stream(1), city_air).time_s.shape == (3,)
+
+
+def test_an_airspace_of_another_world_is_refused(city, hills_air: Airspace) -> None:
+    with pytest.raises(AssertionError, match="another world"):
+        fly(city.world, FlightKnobs(), 3, stream(1), hills_air)
