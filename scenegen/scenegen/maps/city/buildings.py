@@ -130,7 +130,7 @@ def draw_style(kind: Kind, pitched: bool, palette: PaletteBuilder, rng: np.rando
         unit=palette.pick("metal_galv_weathered", rng),
         storey_m=storey,
         first_storey_m=first,
-        pitch_m=rng.uniform(2.6, 4.2) if kind is not Kind.SHED else rng.uniform(4.5, 7.0),
+        pitch_m=rng.uniform(3.0, 4.6) if kind is not Kind.SHED else rng.uniform(4.5, 7.0),
         window_share=share,
         sill_m=sill,
         head_m=min(sill + rng.uniform(1.3, 1.7), storey - 0.35),

@@ -24,7 +24,7 @@ class CityKnobs(Section):
     building_density: Span = (0.8, 0.97)
     """Share of building lots that are built on; the rest are yards and car parks."""
 
-    storeys: Span = (2.0, 7.0)
+    storeys: Span = (2.0, 6.0)
     """Storeys of ordinary buildings; towers and sheds have their own rules."""
 
     tower_share: Span = (0.02, 0.10)
@@ -54,7 +54,7 @@ class CityKnobs(Section):
     park_trees_per_1000_m2: Span = (6.0, 14.0)
     """Trees in parks."""
 
-    parked_cars_per_100_m: Span = (4.0, 11.0)
+    parked_cars_per_100_m: Span = (3.0, 8.0)
     """Parked cars along 100 m of kerb."""
 
     moving_cars_per_100_m: Span = (0.3, 1.2)

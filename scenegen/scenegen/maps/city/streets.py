@@ -11,7 +11,7 @@ from shapely.ops import split
 
 ARTERIAL_WIDTH_M = 15.0
 COLLECTOR_WIDTH_M = 11.0
-SIDE_WIDTH_M = 8.0
+SIDE_WIDTH_M = 9.0
 
 _CHORD_M = 14.0
 _CORNER_RADIUS_M = 5.0
