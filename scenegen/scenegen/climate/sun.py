@@ -65,7 +65,9 @@ def sun_direction(season: Season, hour: Float64[np.ndarray, "hours"]) -> Float64
     """Unit vectors towards the sun, ENU, at hours of the season's date (local mean solar time, longitude 0)."""
     time = season.midnight_unix_s + 3600.0 * (np.asarray(hour, dtype=np.float64) % 24.0)
     zenith, azimuth = (np.radians(a) for a in solar_zenith_azimuth_deg(time, season.latitude_deg))
-    return np.stack([np.sin(zenith) * np.sin(azimuth), np.sin(zenith) * np.cos(azimuth), np.cos(zenith)], axis=-1)
+    return np.stack(
+        [np.sin(zenith) * np.sin(azimuth), np.sin(zenith) * np.cos(azimuth), np.cos(zenith)], axis=-1
+    )
 
 
 def daylight(season: Season) -> tuple[float, float] | None:
@@ -107,7 +109,10 @@ def extraterrestrial_Wm2(season: Season) -> float:
 
 
 def clear_sky_Wm2(
-    sin_elevation: Float64[np.ndarray, "hours"], linke_turbidity: float, extra_Wm2: float, altitude_m: float = 0.0
+    sin_elevation: Float64[np.ndarray, "hours"],
+    linke_turbidity: float,
+    extra_Wm2: float,
+    altitude_m: float = 0.0,
 ) -> tuple[Float64[np.ndarray, "hours"], Float64[np.ndarray, "hours"]]:
     """Direct normal and diffuse horizontal irradiance of a cloudless sky [W/m^2].
 

@@ -55,11 +55,11 @@ class Weather:
     @property
     def vapour_pressure_hPa(self) -> float:
         """Partial pressure of water vapour [hPa]."""
-        return float(saturation_pressure_hPa(np.float64(self.dew_point_K)))
+        return float(saturation_pressure_hPa(np.array(self.dew_point_K)))
 
     def atmosphere(self, hour: float) -> Atmosphere:
         """Air, in-band sky and path at an hour of this day, as the camera sees them."""
-        air = float(self.air_K(np.float64(hour)))
+        air = float(self.air_K(np.array(hour, dtype=np.float64)))
         return Atmosphere(
             air_K=air,
             vapour_pressure_hPa=self.vapour_pressure_hPa,

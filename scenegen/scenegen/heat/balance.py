@@ -128,8 +128,9 @@ def solve_day(
     """
     samples = absorbed_Wm2.shape[1]
     T = np.array(np.broadcast_to(air.temperature_K if start_K is None else start_K, absorbed_Wm2.shape))
-    worst, step = np.inf, 0
-    for step in range(1, _STEPS + 1):
+    worst, steps = np.inf, 0
+    while steps < _STEPS:
+        steps += 1
         lost, slope = surface_losses(T, skins, air)
         conducted = np.fft.irfft(admittance * np.fft.rfft(T), n=samples)
         residual = absorbed_Wm2 + inner_Wm2 - lost - conducted
@@ -140,4 +141,4 @@ def solve_day(
         if float(np.abs(move).max(initial=0.0)) < _TOLERANCE_K:
             break
     _, slope = surface_losses(T, skins, air)
-    return DaySolution(T, slope.mean(axis=1), worst, step)
+    return DaySolution(T, slope.mean(axis=1), worst, steps)

@@ -114,7 +114,9 @@ class ClassDays:
         for _ in range(_EXCHANGES):
             short, long = mean_irradiance(outlook, neighbours, day)
             absorbed = _absorbed(traits, short, long, day.direct_Wm2 * beam)
-            guess = _bounded(solve_day(absorbed, inner, Y, traits.skins, day.air, guess).temperature_K, traits)
+            guess = _bounded(
+                solve_day(absorbed, inner, Y, traits.skins, day.air, guess).temperature_K, traits
+            )
             neighbours = Neighbours.of(
                 day,
                 outlook.membership,
@@ -126,8 +128,12 @@ class ClassDays:
             )
         short, long = mean_irradiance(outlook, neighbours, day)
         cos_sun = np.maximum(np.einsum("ci,ni->cn", classes.normal, day.sun), 0.0) * (day.sun[:, 2] > 0.0)
-        lit = solve_day(_absorbed(traits, short, long, day.direct_Wm2 * cos_sun), inner, Y, traits.skins, day.air, guess)
-        shaded = solve_day(_absorbed(traits, short, long, 0.0 * cos_sun), inner, Y, traits.skins, day.air, guess)
+        lit = solve_day(
+            _absorbed(traits, short, long, day.direct_Wm2 * cos_sun), inner, Y, traits.skins, day.air, guess
+        )
+        shaded = solve_day(
+            _absorbed(traits, short, long, 0.0 * cos_sun), inner, Y, traits.skins, day.air, guess
+        )
         return ClassDays(traits, Y, cos_sun, neighbours, lit, shaded)
 
 

@@ -56,7 +56,11 @@ class ThermalClasses:
         weight = sites.area.astype(np.float64) + 1e-9  # a site without area still belongs somewhere
         area = np.bincount(member, weights=weight, minlength=count)
         normal = np.stack(
-            [np.bincount(member, weights=weight * sites.normal[:, axis], minlength=count) for axis in range(3)], axis=1
+            [
+                np.bincount(member, weights=weight * sites.normal[:, axis], minlength=count)
+                for axis in range(3)
+            ],
+            axis=1,
         )
         length = np.linalg.norm(normal, axis=1, keepdims=True)
         return ThermalClasses(
@@ -81,5 +85,7 @@ def orientation_bin(normal: Float32[np.ndarray, "sites 3"]) -> Int64[np.ndarray,
     slope = FIRST_SLOPE + np.floor(turn * SLOPE_AZIMUTHS + 0.5).astype(np.int64) % SLOPE_AZIMUTHS
     steep = slope + SLOPE_AZIMUTHS
     return np.select(
-        [up > _FLAT_COS, up > _STEEP_COS, up > _WALL_COS, up >= _DOWN_COS], [np.full_like(wall, UP), slope, steep, wall], DOWN
+        [up > _FLAT_COS, up > _STEEP_COS, up > _WALL_COS, up >= _DOWN_COS],
+        [np.full_like(wall, UP), slope, steep, wall],
+        DOWN,
     )

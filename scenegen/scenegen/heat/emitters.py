@@ -46,10 +46,14 @@ def group_sites(world: World) -> tuple[UInt8[np.ndarray, "sites"], int]:
 
 
 def group_classes(
-    palette: tuple[Surface, ...], entry: Int64[np.ndarray, "classes"], orientation: Int64[np.ndarray, "classes"]
+    palette: tuple[Surface, ...],
+    entry: Int64[np.ndarray, "classes"],
+    orientation: Int64[np.ndarray, "classes"],
 ) -> Int64[np.ndarray, "classes"]:
     """Emitter group of each thermal class."""
-    return np.array([group(palette[p], int(o)) for p, o in zip(entry, orientation, strict=True)], dtype=np.int64)
+    return np.array(
+        [group(palette[p], int(o)) for p, o in zip(entry, orientation, strict=True)], dtype=np.int64
+    )
 
 
 def group(surface: Surface, orientation: int) -> int:
@@ -67,7 +71,11 @@ def group(surface: Surface, orientation: int) -> int:
         return _First.UNDERSIDE
     if orientation >= FIRST_WALL:
         sector = orientation - FIRST_WALL
-        return _First.WINDOW + (sector + 2) // 4 % 4 if build is Build.WINDOW else _First.WALL + (sector + 1) // 2 % 8
+        return (
+            _First.WINDOW + (sector + 2) // 4 % 4
+            if build is Build.WINDOW
+            else _First.WALL + (sector + 1) // 2 % 8
+        )
     return _level_group(surface, orientation)
 
 

@@ -66,4 +66,4 @@ class Day:
     def nearest(self, hour: Float64[np.ndarray, "times"]) -> Int64[np.ndarray, "samples"]:
         """For each sample the index of the nearest of some hours, around the clock."""
         apart = np.abs(self.hour[:, None] - hour[None, :])
-        return np.argmin(np.minimum(apart, 24.0 - apart), axis=1)
+        return np.asarray(np.argmin(np.minimum(apart, 24.0 - apart), axis=1))

@@ -28,7 +28,8 @@ class Neighbours:
         """Ground at air temperature in every direction: the start of the exchange."""
         shape = (groups, day.hour.size)
         return Neighbours(
-            np.array(np.broadcast_to(day.ground_short_Wm2, shape)), np.array(np.broadcast_to(day.ground_long_Wm2, shape))
+            np.array(np.broadcast_to(day.ground_short_Wm2, shape)),
+            np.array(np.broadcast_to(day.ground_long_Wm2, shape)),
         )
 
     @staticmethod
@@ -53,7 +54,9 @@ class Neighbours:
         short_Wm2, long_Wm2 : float64 (classes, samples)
             Mean short-wave and long-wave irradiance on each class; the part not absorbed is reflected diffusely.
         """
-        emitted = emissivity[:, None] * STEFAN_BOLTZMANN * temperature_K**4 + (1.0 - emissivity)[:, None] * long_Wm2
+        emitted = (
+            emissivity[:, None] * STEFAN_BOLTZMANN * temperature_K**4 + (1.0 - emissivity)[:, None] * long_Wm2
+        )
         reflected = (1.0 - absorptance)[:, None] * short_Wm2
         absent = (membership.sum(axis=1) == 0.0)[:, None]
         return Neighbours(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Float16, Float32, Float64
 
 from scenegen.exposure import Exposure
 from scenegen.heat.classes import ThermalClasses
@@ -36,7 +36,10 @@ class Outlook:
 
     @staticmethod
     def of(
-        classes: ThermalClasses, palette: tuple[Surface, ...], exposure: Exposure, area: Float64[np.ndarray, "sites"]
+        classes: ThermalClasses,
+        palette: tuple[Surface, ...],
+        exposure: Exposure,
+        area: Float64[np.ndarray, "sites"],
     ) -> Outlook:
         """Means of an exposure; sums run in site order without threads, so they never vary."""
         count = classes.palette.size
@@ -47,10 +50,24 @@ class Outlook:
             sites = classes.members(c)
             share = (area[sites] + 1e-9) / (area[sites] + 1e-9).sum()
             weight = share.astype(np.float32)
-            beam[c] = np.einsum("s,st->t", weight, exposure.beam[sites].astype(np.float32))
+            beam[c] = np.einsum("s,st->t", weight, single(exposure.beam[sites]))
             neighbour[c] = np.einsum("s,sg->g", weight, exposure.neighbour_share[sites])
             sky[c] = np.einsum("s,s->", share, exposure.sky_view[sites].astype(np.float64))
         member = np.zeros((EMITTER_GROUPS, count))
-        member[group_classes(palette, classes.palette, classes.orientation), np.arange(count)] = classes.area_m2
+        member[group_classes(palette, classes.palette, classes.orientation), np.arange(count)] = (
+            classes.area_m2
+        )
         total = member.sum(axis=1, keepdims=True)
         return Outlook(beam, sky, neighbour, member / np.where(total > 0.0, total, 1.0))
+
+
+def single(half: Float16[np.ndarray, "*shape"]) -> Float32[np.ndarray, "*shape"]:
+    """Finite halves >= 0 as float32, exactly; several times faster than numpy's own conversion.
+
+    Exponent and mantissa move to their places in a float32, whose exponent counts from 127 instead of 15.
+    """
+    bits = half.view(np.uint16).astype(np.uint32)
+    bits <<= np.uint32(13)
+    values = bits.view(np.float32)
+    values *= np.float32(2.0**112)
+    return values

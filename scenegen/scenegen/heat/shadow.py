@@ -11,7 +11,9 @@ from jaxtyping import Complex128, Float64, Int64
 
 
 def memory(
-    loss_Wm2K: Float64[np.ndarray, "surfaces"], admittance: Complex128[np.ndarray, "surfaces harmonics"], samples: int
+    loss_Wm2K: Float64[np.ndarray, "surfaces"],
+    admittance: Complex128[np.ndarray, "surfaces harmonics"],
+    samples: int,
 ) -> Float64[np.ndarray, "surfaces samples"]:
     """Temperature change now per flux absorbed at each sample of the day [K m^2/W].
 
@@ -26,4 +28,4 @@ def collect(
 ) -> Float64[np.ndarray, "surfaces count"]:
     """Sum weights of samples that share an index (the sun position nearest to them)."""
     chosen = (index[:, None] == np.arange(count)[None, :]).astype(np.float64)
-    return np.einsum("cn,nk->ck", weight, chosen)
+    return np.asarray(np.einsum("cn,nk->ck", weight, chosen))

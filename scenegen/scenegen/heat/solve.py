@@ -5,17 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float32, Float64
+from jaxtyping import Float32
 
 from scenegen.climate.season import Season
 from scenegen.climate.weather import Weather
 from scenegen.exposure import Exposure
-from scenegen.heat.balance import DaySolution
 from scenegen.heat.class_days import ClassDays, mean_irradiance
 from scenegen.heat.classes import ThermalClasses
+from scenegen.heat.expansion import Expansion, site_temperatures
 from scenegen.heat.forcing import Day
 from scenegen.heat.outlook import Outlook
-from scenegen.heat.shadow import collect, memory
+from scenegen.heat.shadow import memory
 from scenegen.heat.texture import NIGHT_SHARE, amplitude_factor, solar_memory
 from scenegen.radiometry.atmosphere import Atmosphere
 from scenegen.thermal_state import ThermalState
@@ -51,15 +51,15 @@ class HeatModel:
         exposure = self.exposure
         day = Day.of(exposure.season, weather, hour)
         days = ClassDays.of(self.classes, self.world.palette, self.outlook, exposure.sun_hour, weather, day)
-        lit = _Linear.of(days.lit, days.cos_sun, days, day, self)
-        shaded = _Linear.of(days.shaded, 0.0 * days.cos_sun, days, day, self)
+        lit = Expansion.of(days.lit, days.cos_sun, days, day, self.outlook, exposure.sun_hour)
+        shaded = Expansion.of(days.shaded, 0.0 * days.cos_sun, days, day, self.outlook, exposure.sun_hour)
         temperature = np.empty(self.world.sites.area.size, dtype=np.float32)
         for c in range(self.classes.palette.size):
             sites = self.classes.members(c)
             if np.isfinite(days.traits.fixed_K[c]):
                 temperature[sites] = days.traits.fixed_K[c]
                 continue
-            T = _site_temperatures(lit, shaded, c, exposure, sites)
+            T = site_temperatures(lit, shaded, c, exposure, sites)
             temperature[sites] = np.minimum(T, np.float32(days.traits.ceiling_K[c]))
         return ThermalState(
             season=exposure.season,
@@ -83,75 +83,6 @@ class HeatModel:
         )
         factor = np.where(area > 0.0, total / np.where(area > 0.0, area, 1.0), NIGHT_SHARE)
         return (factor * [s.material.texture_K for s in self.world.palette]).astype(np.float32)
-
-
-@dataclass(frozen=True, eq=False)
-class _Linear:
-    """Temperature of a class's sites now, linear in what each site sees.
-
-    ``T = base + beam @ per_beam + sky * per_sky + neighbour_share @ per_neighbour`` [K].
-    """
-
-    base: Float32[np.ndarray, "classes"]
-    per_beam: Float32[np.ndarray, "classes times"]
-    per_sky: Float32[np.ndarray, "classes"]
-    per_neighbour: Float32[np.ndarray, "classes groups"]
-    sunned: Float32[np.ndarray, "classes"]
-
-    @staticmethod
-    def of(
-        solution: DaySolution,
-        cos_sun: Float64[np.ndarray, "classes samples"],
-        days: ClassDays,
-        day: Day,
-        model: HeatModel,
-    ) -> _Linear:
-        """Expand around a class solution that was made with the beam ``direct * cos_sun``."""
-        traits, times = days.traits, model.exposure.sun_hour
-        felt = memory(solution.loss_Wm2K, days.admittance, day.hour.size)
-        alpha, eps = traits.absorptance[:, None] * felt, traits.skins.emissivity[:, None] * felt
-        beam = alpha * traits.direct_factor[:, None] * day.direct_Wm2
-
-        def seen(short: Float64[np.ndarray, "*any samples"], long: Float64[np.ndarray, "*any samples"]) -> np.ndarray:
-            return np.einsum("cn,...n->c...", alpha, short) + np.einsum("cn,...n->c...", eps, long)
-
-        ground = seen(day.ground_short_Wm2, day.ground_long_Wm2)
-        sky = seen(day.diffuse_Wm2, day.sky_Wm2) - ground
-        neighbour = seen(days.neighbours.short_Wm2, days.neighbours.long_Wm2) - ground[:, None]
-        per_beam = collect(beam, day.nearest(times), times.size) if times.size else np.zeros((beam.shape[0], 0))
-        outlook = model.outlook
-        usual = np.einsum("cn,cn->c", beam, cos_sun) + sky * outlook.sky
-        usual = usual + np.einsum("cg,cg->c", neighbour, outlook.neighbour)
-        full = np.einsum("cn,cn->c", beam, days.cos_sun)
-        columns = (solution.temperature_K[:, 0] - usual, per_beam, sky, neighbour, full)
-        return _Linear(*(np.asarray(x, dtype=np.float32) for x in columns))
-
-    def heat_of_sun(self, c: int, beam: Float32[np.ndarray, "members times"]) -> Float32[np.ndarray, "members"]:
-        """Part of the temperature the visible sun is responsible for [K]."""
-        return np.einsum("st,t->s", beam, self.per_beam[c])
-
-    def rest(
-        self, c: int, sky: Float32[np.ndarray, "members"], share: Float32[np.ndarray, "members groups"]
-    ) -> Float32[np.ndarray, "members"]:
-        """Everything but the beam."""
-        return self.base[c] + sky * self.per_sky[c] + np.einsum("sg,g->s", share, self.per_neighbour[c])
-
-
-def _site_temperatures(
-    lit: _Linear, shaded: _Linear, c: int, exposure: Exposure, sites: np.ndarray
-) -> Float32[np.ndarray, "members"]:
-    """Temperatures of a class's sites: the two expansions, blended by how much of the full sun a site has had.
-
-    Sums run along rows by `einsum`, in a fixed order and without a threaded linear algebra library, so the bytes do
-    not depend on the machine's load.
-    """
-    beam = exposure.beam[sites].astype(np.float32)
-    sky, share = exposure.sky_view[sites], exposure.neighbour_share[sites]
-    warm, cool = lit.heat_of_sun(c, beam), shaded.heat_of_sun(c, beam)
-    full = lit.sunned[c]
-    sunny = np.clip(warm / full, 0.0, 1.0) if full > 1e-3 else np.ones_like(warm)
-    T = sunny * (warm + lit.rest(c, sky, share)) + (1.0 - sunny) * (cool + shaded.rest(c, sky, share))
-    return np.asarray(T, dtype=np.float32)
 
 
 def solve(world: World, exposure: Exposure, weather: Weather, hour: float) -> ThermalState:

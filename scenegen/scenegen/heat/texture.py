@@ -35,4 +35,4 @@ def solar_memory(
 
 def amplitude_factor(solar: Float64[np.ndarray, "classes"]) -> Float64[np.ndarray, "classes"]:
     """Factor on a material's texture amplitude, `NIGHT_SHARE` in the dark, 1 in full sun."""
-    return NIGHT_SHARE + (1.0 - NIGHT_SHARE) * np.clip(solar, 0.0, 1.5)
+    return np.asarray(NIGHT_SHARE + (1.0 - NIGHT_SHARE) * np.clip(solar, 0.0, 1.5))

@@ -56,15 +56,13 @@ def aerosol_per_km(visibility_km: float) -> float:
     Koschmieder's 3.912 / V at 0.55 um times LOWTRAN 7's ratio at 10 um: 0.09 for rural and urban haze, 0.27 for
     radiation fog at V = 0.5 km, 1.2 for dense advection fog at V = 0.2 km, log-log between them.
     """
-    ratio = np.exp(
-        np.interp(np.log(visibility_km), np.log([0.2, 0.5, 2.0]), np.log([1.2, 0.27, 0.09]))
-    )
+    ratio = np.exp(np.interp(np.log(visibility_km), np.log([0.2, 0.5, 2.0]), np.log([1.2, 0.27, 0.09])))
     return 3.912 / visibility_km * float(ratio)
 
 
 def path_terms(atmosphere: Atmosphere, band_um: tuple[float, float]) -> PathTerms:
     """Coefficients of the path for an atmosphere and a band; a vacuum where `atmosphere.path` is off."""
-    air = float(band_radiance(np.float64(atmosphere.air_K), band_um))
+    air = float(band_radiance(np.array(atmosphere.air_K), band_um))
     if not atmosphere.path:
         return PathTerms((1.0, 0.0, 0.0), (0.0, 0.0, 0.0), air)
     f = band(band_um).path

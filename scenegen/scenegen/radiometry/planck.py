@@ -103,13 +103,15 @@ class PlanckFit:
         """B(T) in the precision of the argument; relative error below 1e-5 at 180-420 K."""
         T = np.asarray(temperature_K)
         y = T.dtype.type(300.0) / T - T.dtype.type(1.0)
-        return np.exp(_horner(self.radiance_coefficients, y))
+        return np.asarray(np.exp(_horner(self.radiance_coefficients, y)))
 
     def temperature(self, radiance: Radiances) -> Temperatures:
         """Inverse [K] in the precision of the argument; error below 1 mK at 180-420 K."""
         L = np.asarray(radiance)
         z = (np.log(L) - L.dtype.type(self.temperature_offset)) / L.dtype.type(self.temperature_scale)
-        return L.dtype.type(300.0) / (L.dtype.type(1.0) + _horner(self.temperature_coefficients, z))
+        return np.asarray(
+            L.dtype.type(300.0) / (L.dtype.type(1.0) + _horner(self.temperature_coefficients, z))
+        )
 
 
 def _horner(coefficients: tuple[float, ...], x: Temperatures) -> Temperatures:

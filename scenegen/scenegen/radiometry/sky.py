@@ -17,7 +17,7 @@ from scenegen.radiometry.planck import band_radiance
 
 
 def air_mass(sin_elevation: Float[np.ndarray, "*shape"]) -> Float64[np.ndarray, "*shape"]:
-    """Relative optical air mass, Kasten and Young 1989 (doi:10.1364/AO.28.004735); below the horizon its value there."""
+    """Relative optical air mass (Kasten, Young 1989, doi:10.1364/AO.28.004735), at its largest below the horizon."""
     s = np.clip(np.asarray(sin_elevation, dtype=np.float64), 0.0, 1.0)
     elevation_deg = np.degrees(np.arcsin(s))
     return np.asarray(1.0 / (s + 0.50572 * (elevation_deg + 6.07995) ** -1.6364))
@@ -53,9 +53,9 @@ def sky_radiance(
     """
     s = np.asarray(sin_elevation, dtype=np.float64)
     if math.isfinite(atmosphere.uniform_sky_K):
-        return np.full(s.shape, band_radiance(np.float64(atmosphere.uniform_sky_K), band_um))
-    air = band_radiance(np.float64(atmosphere.air_K), band_um)
-    cloud = band_radiance(np.float64(atmosphere.cloud_K), band_um)
+        return np.full(s.shape, band_radiance(np.array(atmosphere.uniform_sky_K), band_um))
+    air = band_radiance(np.array(atmosphere.air_K), band_um)
+    cloud = band_radiance(np.array(atmosphere.cloud_K), band_um)
     clear = clear_sky_emissivity(s, atmosphere, band_um)
     above = clear * air + atmosphere.cloud_fraction * (1.0 - clear) * cloud
     return np.asarray(np.where(s < 0.0, air, above))
