@@ -16,7 +16,8 @@ from scenegen_flythrough.clearance import MeshProximity
 _LAYER_M = 2.0  # 64 layers of 2 m: heights of 0 to 128 m above ground in one 64-bit word
 _GROUND_M = 0.5  # what reaches no higher above the ground is ground
 _MAX_CELLS = 1_500_000
-_SAMPLES_AT_ONCE = 500_000
+_SAMPLE_CELLS = 2.0  # step of the samples: walls may show gaps of a cell, too narrow to be taken for a way
+_SAMPLES_AT_ONCE = 200_000
 ROOM_CELLS = 10
 """Distances to the nearest obstacle are counted up to this many cells."""
 
@@ -97,7 +98,7 @@ class Airspace:
         points = mesh.vertices.astype(np.float64)
         points[:, 2] -= self.world.ground.at(points[:, :2])
         occupied = np.zeros((rows, columns, 64), np.bool_)
-        for samples in (points, *_inner_points(points, mesh.faces, self.cell_m)):
+        for samples in (points, *_inner_points(points, mesh.faces, _SAMPLE_CELLS * self.cell_m)):
             column, row = self._cell(samples[:, :2])
             layer = np.floor(samples[:, 2] / _LAYER_M)
             keep = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
@@ -125,15 +126,12 @@ def _inner_points(
     Each triangle is covered by rows parallel to its longest side, so that a tall pane costs its area, not its height
     squared.
     """
-    low = points[:, 2] <= _GROUND_M
-    standing = faces[~(low[faces[:, 0]] & low[faces[:, 1]] & low[faces[:, 2]])]
+    standing = faces[_standing_large(points, faces, step_m)]
     sides = np.stack(
         [_length2(points[standing[:, k - 2]] - points[standing[:, k]]) for k in range(3)], axis=1
     )
     base = np.argmax(sides, axis=1)
     longest = np.sqrt(np.take_along_axis(sides, base[:, None], axis=1)[:, 0])
-    large = longest > step_m
-    standing, base, longest = standing[large], base[large], longest[large]
     a, b, c = (points[np.take_along_axis(standing, (base[:, None] + k) % 3, axis=1)[:, 0]] for k in range(3))
     width = np.sqrt(_length2(np.cross(b - a, c - a))) / longest
     columns = np.minimum(np.ceil(longest / step_m), 1024.0).astype(np.int64) + 1
@@ -148,6 +146,22 @@ def _inner_points(
         v = (row / (rows[pick] - 1))[:, None]
         u = (column / (columns[pick] - 1))[:, None] * (1.0 - v)
         yield a[pick] + u * (b - a)[pick] + v * (c - a)[pick]
+
+
+def _standing_large(
+    points: Float64[np.ndarray, "vertices 3"], faces: UInt32[np.ndarray, "faces 3"], step_m: float
+) -> Int64[np.ndarray, "large"]:
+    """Faces that rise above the ground and are longer than a step along some axis."""
+    risen = np.zeros(len(faces), np.bool_)
+    long = np.zeros(len(faces), np.bool_)
+    for axis in range(3):
+        value = points[:, axis].astype(np.float32)
+        a, b, c = (value[faces[:, k]] for k in range(3))
+        highest = np.maximum(np.maximum(a, b), c)
+        long |= highest - np.minimum(np.minimum(a, b), c) > step_m
+        if axis == 2:
+            risen = highest > _GROUND_M
+    return np.flatnonzero(long & risen)
 
 
 def _runs(ends: Int64[np.ndarray, "items"], size: int) -> Iterator[tuple[int, int]]:

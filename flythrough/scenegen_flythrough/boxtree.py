@@ -96,15 +96,15 @@ def _curve(
     """
     if len(low) == 0:
         return np.zeros(0, np.uint64)
-    centre = (low.astype(np.float64) + high) / 2
-    origin = centre.min(axis=0)
-    extent = max(float((centre.max(axis=0) - origin).max()), 1e-6)
-    grid = ((centre - origin) * ((2**_BITS - 1) / extent)).astype(np.uint64)
-    size = (high - low).max(axis=1).astype(np.float64)
+    # Column by column: numpy reduces an axis of length three an order of magnitude more slowly.
+    size = np.maximum(np.maximum(high[:, 0] - low[:, 0], high[:, 1] - low[:, 1]), high[:, 2] - low[:, 2])
+    centres = [low[:, axis] + high[:, axis] for axis in range(3)]
+    extent = max(*(float(c.max() - c.min()) for c in centres), 1e-6)
     steps = np.floor(np.log2(np.maximum(size, 1e-6)) / 3.0)
     key = (steps - steps.min()).astype(np.uint64) << np.uint64(3 * _BITS)
-    for axis in range(3):
-        key |= _spread(grid[:, axis]) << np.uint64(axis)
+    for axis, centre in enumerate(centres):
+        grid = ((centre - centre.min()) * ((2**_BITS - 1) / extent)).astype(np.uint64)
+        key |= _spread(np.minimum(grid, np.uint64(2**_BITS - 1))) << np.uint64(axis)
     return np.asarray(key)
 
 
