@@ -2,15 +2,90 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import hashlib
+import re
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from scenegen_datasets.info import DatasetInfo
+from scenegen.foundation import canonical
+from scenegen.foundation.atomic import remove, write_atomic
+from scenegen.foundation.errors import DatasetError, InputError
+from scenegen_datasets.card import card
+from scenegen_datasets.clip import ClipRecord
+from scenegen_datasets.content import clip_digest, content_id
+from scenegen_datasets.croissant import croissant
+from scenegen_datasets.description import describe
+from scenegen_datasets.index import Rows, rows_of, write_index
+from scenegen_datasets.info import DatasetInfo, info
 from scenegen_datasets.job import ClipJob
+from scenegen_datasets.manifest import file_sha256, manifest_bytes
+from scenegen_datasets.receipt import Receipt, read_receipt
+from scenegen_datasets.store import (
+    CARD,
+    CLIPS,
+    CROISSANT,
+    DATASET,
+    INDEX,
+    LOCK,
+    MANIFEST,
+    RECIPE,
+    clean,
+    finished,
+    read_lock,
+)
+
+_SEMVER = re.compile(r"(0|[1-9]\d*)\.(0|[1-9]\d*)\.(0|[1-9]\d*)")
+
+
+class _Tally:
+    """Receipts pass through once; what is needed of each is kept, its frames are not."""
+
+    def __init__(self, root: Path) -> None:
+        self._root = root
+        self.records: list[ClipRecord] = []
+        self.digests: list[str] = []
+        self.lines: list[bytes] = []
+        self.sums: dict[str, str] = {}
+        self.layers: tuple[str, ...] = ()
+        self.shard_bytes = 0
+
+    def rows(self, jobs: Sequence[ClipJob]) -> Iterator[Rows]:
+        for job in jobs:
+            receipt = read_receipt(self._root, job.receipt)
+            if receipt.clip.job != job:
+                raise DatasetError(f"{job.receipt}: made for {receipt.clip.job}, the plan says {job}")
+            if self.layers not in ((), receipt.layers):
+                raise DatasetError(f"{job.receipt}: holds other layers than the clips before it")
+            self._keep(receipt)
+            yield rows_of(receipt)
+
+    def _keep(self, receipt: Receipt) -> None:
+        job = receipt.clip.job
+        digest = clip_digest(receipt)
+        self.layers = receipt.layers
+        self.records.append(receipt.clip)
+        self.digests.append(digest)
+        self.shard_bytes += receipt.size
+        self.sums[job.shard] = receipt.sha256
+        self.sums[job.receipt] = file_sha256(self._root / job.receipt)
+        self.lines.append(canonical.canonical(clip_line(receipt, digest)))
+
+
+def clip_line(receipt: Receipt, digest: str) -> dict[str, object]:
+    """One line of ``clips.jsonl``."""
+    return {
+        **receipt.clip.to_dict(),
+        "shard": {"path": receipt.clip.job.shard, "sha256": receipt.sha256, "size": receipt.size},
+        "fingerprint": receipt.fingerprint,
+        "content": digest,
+        "statistics": dict(receipt.statistics),
+    }
 
 
 def finish(root: Path, jobs: Sequence[ClipJob], *, version: str = "1.0.0") -> DatasetInfo:
     """Write everything that is derived from the receipts. Idempotent; the same bytes whoever made the clips.
+
+    Call it with the `DirectoryLock` held and no worker running.
 
     Parameters
     ----------
@@ -20,5 +95,50 @@ def finish(root: Path, jobs: Sequence[ClipJob], *, version: str = "1.0.0") -> Da
         The plan. Clips without a receipt (quarantined) are named in ``dataset.json`` as missing.
     version : str
         Semantic version of the data.
+
+    Raises
+    ------
+    InputError
+        If `version` is not a semantic version or no clip at all was made.
+    DatasetError
+        If a receipt contradicts the plan or the other clips.
     """
-    raise NotImplementedError
+    if not _SEMVER.fullmatch(version):
+        raise InputError(f"version '{version}' is not MAJOR.MINOR.PATCH")
+    lock, done = read_lock(root), finished(root)
+    made = [job for job in sorted(jobs) if job.name in done]
+    missing = [job for job in sorted(jobs) if job.name not in done]
+    if not made:
+        raise InputError(f"{root} holds no finished clip yet; run the same render command again")
+    clean(root)
+    remove(root / DATASET)
+    tally = _Tally(root)
+    write_index(root / INDEX, tally.rows(made), sum(job.frames for job in made))
+    write_atomic(root / CLIPS, b"".join(line + b"\n" for line in tally.lines))
+    description = describe(
+        lock,
+        tally.records,
+        tally.layers,
+        version=version,
+        content_id=content_id(tally.digests),
+        missing=missing,
+        sums={name: file_sha256(root / name) for name in (CLIPS, INDEX)},
+        shard_bytes=tally.shard_bytes,
+    )
+    write_atomic(root / CARD, card(description))
+    write_atomic(root / CROISSANT, canonical.pretty(croissant(description, tally.sums)))
+    last = canonical.pretty(description)
+    sums = tally.sums | {DATASET: hashlib.sha256(last).hexdigest()} | _plain_sums(root)
+    write_atomic(root / MANIFEST, manifest_bytes(sums))
+    write_atomic(root / DATASET, last)
+    return info(root)
+
+
+def _plain_sums(root: Path) -> dict[str, str]:
+    names = [RECIPE, LOCK, CLIPS, INDEX, CARD, CROISSANT]
+    preview = root / "preview"
+    if preview.is_dir() and not preview.is_symlink():
+        names += [
+            str(p.relative_to(root)) for p in sorted(preview.rglob("*")) if p.is_file() and not p.is_symlink()
+        ]
+    return {name: file_sha256(root / name) for name in names}

@@ -6,6 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from scenegen_datasets.description import ranges_of, read_description
+from scenegen_datasets.job import SPLITS
+from scenegen_datasets.receipt import read_receipt, receipt_paths
+from scenegen_datasets.store import DATASET, read_lock
+
 
 @dataclass(frozen=True)
 class DatasetInfo:
@@ -14,7 +19,7 @@ class DatasetInfo:
     Attributes
     ----------
     name, version, recipe_id, content_id : str
-        `content_id` is empty while the dataset grows.
+        `version` and `content_id` are empty while the dataset grows.
     complete : bool
         Whether ``dataset.json`` is there and every clip of the plan was made.
     pairs, frames, clips, worlds : int
@@ -22,10 +27,12 @@ class DatasetInfo:
         Pairs per split.
     bytes : int
         Size of the shards.
-    hours, air_mean_K, sun_elevation_deg : (float, float)
-        Smallest and largest over the clips.
+    ranges : mapping of str to (float, float)
+        Smallest and largest ``hour``, ``sun_elevation_deg``, ``weather.air_mean_K``, ... over the clips.
     missing : tuple of str
-        Clips of the plan without a receipt.
+        Clips of the plan that were not made; unknown, hence empty, while the dataset grows.
+    pairs_planned : int or None
+        What the recipe asked for.
     """
 
     name: str
@@ -39,10 +46,9 @@ class DatasetInfo:
     worlds: int
     splits: Mapping[str, int]
     bytes: int
-    hours: tuple[float, float]
-    air_mean_K: tuple[float, float]
-    sun_elevation_deg: tuple[float, float]
+    ranges: Mapping[str, tuple[float, float]]
     missing: tuple[str, ...]
+    pairs_planned: int | None
 
 
 def info(root: Path) -> DatasetInfo:
@@ -52,5 +58,49 @@ def info(root: Path) -> DatasetInfo:
     ------
     InputError
         If there is no dataset at `root`.
+    DatasetError
+        If its ``dataset.json``, lock or, while it grows, a receipt is damaged.
     """
-    raise NotImplementedError
+    lock = read_lock(root)
+    planned = lock["recipe"].get("pairs")
+    if not (root / DATASET).exists():
+        return _growing(root, lock, planned)
+    d = read_description(root / DATASET)
+    counts = d["counts"]
+    return DatasetInfo(
+        name=d["name"],
+        version=d["version"],
+        recipe_id=d["recipe_id"],
+        content_id=d["content_id"],
+        complete=not d["missing"],
+        pairs=counts["pairs"],
+        frames=counts["frames"],
+        clips=counts["clips"],
+        worlds=counts["worlds"],
+        splits={s: d["splits"][s]["pairs"] for s in SPLITS},
+        bytes=counts["shard_bytes"],
+        ranges={name: (low, high) for name, (low, high) in d["ranges"].items()},
+        missing=tuple(d["missing"]),
+        pairs_planned=planned,
+    )
+
+
+def _growing(root: Path, lock: Mapping[str, str], planned: int | None) -> DatasetInfo:
+    receipts = [read_receipt(root, path) for path in receipt_paths(root)]
+    jobs = [r.clip.job for r in receipts]
+    return DatasetInfo(
+        name=lock["name"],
+        version="",
+        recipe_id=lock["recipe_id"],
+        content_id="",
+        complete=False,
+        pairs=sum(j.pairs for j in jobs),
+        frames=sum(j.frames for j in jobs),
+        clips=len(jobs),
+        worlds=len({(j.map, j.world) for j in jobs}),
+        splits={s: sum(j.pairs for j in jobs if j.split == s) for s in SPLITS},
+        bytes=sum(r.size for r in receipts),
+        ranges=ranges_of(r.clip for r in receipts),
+        missing=(),
+        pairs_planned=planned,
+    )

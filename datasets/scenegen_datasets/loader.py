@@ -1,14 +1,32 @@
-"""Read pairs and sequences as numpy arrays."""
+"""Read pairs and sequences as numpy arrays.
+
+Plain ``len`` and ``[]``: works in a torch ``DataLoader`` (spawned workers, shuffling), in Grain, and in a plain loop.
+Every byte is checked against its CRC-32 before it is decoded: damage raises `CorruptFrameError`, it never becomes data.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from scenegen.foundation.errors import CorruptFrameError, InputError, nearest
+from scenegen_datasets.index import checked, job_of
+from scenegen_datasets.job import SPLITS
+from scenegen_datasets.layers import LAYERS, check_layers, layers_by_member
+from scenegen_datasets.reader import ShardReader
+from scenegen_datasets.source import Source, open_source
+
+PREVIOUS = "previous_thermal"
+"""Pseudo-layer: the thermal frame before."""
+
+Sample = dict[str, Any]
+
 
 class PairDataset:
-    """A dataset as a sequence of samples: ``len(d)``, ``d[i]`` -> dict of numpy arrays.
+    """A dataset as a sequence of samples: ``len(d)``, ``d[i]`` -> dict of numpy arrays and plain values.
 
     Parameters
     ----------
@@ -16,15 +34,26 @@ class PairDataset:
     split : str or None
         ``train``, ``val``, ``test``; None for all.
     layers : sequence of str
-        Which layers are decoded.
+        Which layers are decoded (`scenegen_datasets.layers.LAYERS`), and ``previous_thermal``.
     seq_length : int
-        Frames per sample; 1 gives single frames without a leading axis.
+        Pairs per sample; 1 gives single pairs without a leading axis.
     frame_skip : int
         Frames left out between two of a sequence.
     seq_stride : int
-        Distance between the starts of two sequences.
+        Frames between the starts of two sequences of one clip. Sequences never cross clips.
     allow_partial : bool
         Read what is there of a dataset that still grows.
+
+    Raises
+    ------
+    InputError
+        If there is no dataset, or it does not hold what is asked for.
+
+    Notes
+    -----
+    A sample holds the layers asked for (``depth`` float32 (rows, columns) [m], ...), ``key``, ``map``, ``world``,
+    ``clip``, ``frame``, ``split``, ``time_s``, ``world_from_camera`` (4, 4), ``K`` (3, 3), and ``facts``: hour, season,
+    sun and weather of the clip. With ``seq_length`` n > 1, everything that belongs to a frame has a leading axis of n.
     """
 
     def __init__(
@@ -37,10 +66,127 @@ class PairDataset:
         seq_stride: int = 1,
         allow_partial: bool = False,
     ) -> None:
-        raise NotImplementedError
+        if split is not None and split not in SPLITS:
+            raise InputError(f"unknown split '{split}'{nearest(split, SPLITS)}")
+        for name, value, least in (
+            ("seq_length", seq_length, 1),
+            ("frame_skip", frame_skip, 0),
+            ("seq_stride", seq_stride, 1),
+        ):
+            if value < least:
+                raise InputError(f"{name} is {value}; it must be at least {least}")
+        self.root = Path(path)
+        self.split = split
+        self.layers = check_layers(name for name in layers if name != PREVIOUS)
+        self._previous = PREVIOUS in layers
+        self._steps = np.arange(seq_length) * (frame_skip + 1)
+        self._stride = seq_stride
+        self._allow_partial = allow_partial
+        self._open()
+
+    def _open(self, source: Source | None = None) -> None:
+        self._source = source or open_source(self.root, self._allow_partial)
+        self._reader = ShardReader(self.root)
+        stored = self._source.layers
+        missing = [x for x in (*self.layers, *(("thermal",) if self._previous else ())) if x not in stored]
+        if missing and len(self._source.rows):
+            raise InputError(f"{self.root} holds no layer '{missing[0]}'; it holds {', '.join(stored)}")
+        self._groups = {
+            member: tuple(LAYERS[x] for x in stored if LAYERS[x].member == member)
+            for member in layers_by_member(self.layers)
+        }
+        self._count_sequences()
+
+    def _count_sequences(self) -> None:
+        """Sequences per clip, and their running total: sample i is found by bisection, without a list of samples."""
+        rows, starts = self._source.rows, self._source.starts
+        first = rows[starts]
+        span = int(self._steps[-1]) + 1
+        pairs = first["frames"].astype(np.int64) - 1
+        counts = np.maximum((pairs - span) // self._stride + 1, 0)
+        if self.split is not None:
+            counts[first["split"] != SPLITS.index(self.split)] = 0
+        self._ends = np.cumsum(counts)
 
     def __len__(self) -> int:
-        raise NotImplementedError
+        return int(self._ends[-1]) if len(self._ends) else 0
 
-    def __getitem__(self, index: int) -> dict[str, Any]:
-        raise NotImplementedError
+    def __iter__(self) -> Iterator[Sample]:
+        return (self[i] for i in range(len(self)))
+
+    def __getitem__(self, index: int) -> Sample:
+        """Return one sample; negative indices count from the end.
+
+        Raises
+        ------
+        IndexError
+            Past the end.
+        CorruptFrameError
+            If the stored bytes are not what was written.
+        """
+        length = len(self)
+        at = index + length if index < 0 else index
+        if not 0 <= at < length:
+            raise IndexError(f"sample {index} of {length}")
+        clip = int(np.searchsorted(self._ends, at, side="right"))
+        before = int(self._ends[clip - 1]) if clip else 0
+        first = int(self._source.starts[clip]) + 1 + (at - before) * self._stride
+        frames = [self._frame(first + int(step), clip) for step in self._steps]
+        sample = frames[0] if len(frames) == 1 else _stacked(frames)
+        sample["facts"] = _facts(self._source.facts(clip))
+        return sample
+
+    def _frame(self, position: int, clip: int) -> Sample:
+        row = checked(self._source.rows[position])
+        if int(row["frame"]) != position - int(self._source.starts[clip]):
+            raise CorruptFrameError(
+                f"{self.root / 'index.npy'}: rows are out of order; run `scenegen verify`"
+            )
+        job = job_of(row)
+        sample: Sample = {}
+        for member, group in self._groups.items():
+            arrays = self._reader.arrays(row, member, group)
+            sample |= {layer.name: arrays[layer.name] for layer in group if layer.name in self.layers}
+        if self._previous:
+            before = checked(self._source.rows[position - 1])
+            sample[PREVIOUS] = self._reader.arrays(before, "thermal.png", (LAYERS["thermal"],))["thermal"]
+        return sample | {
+            "key": job.key(int(row["frame"])),
+            "map": job.map,
+            "world": job.world,
+            "clip": job.clip,
+            "frame": int(row["frame"]),
+            "split": job.split,
+            "time_s": float(row["time_s"]),
+            "world_from_camera": row["world_from_camera"].copy(),
+            "K": row["K"].copy(),
+        }
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Only the arguments travel to another process, which opens index and shards itself.
+
+        A growing dataset travels as it was seen here, so that all workers agree on its length.
+        """
+        state = {k: v for k, v in self.__dict__.items() if k != "_reader"}
+        if isinstance(self._source.rows, np.memmap):
+            state["_source"] = None
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._open(state["_source"])
+
+
+def _stacked(frames: list[Sample]) -> Sample:
+    """Join the frames of a sequence: arrays and numbers get a leading axis, what names the clip stays as it is."""
+    same = {"map", "world", "clip", "split"}
+    joined: Sample = {}
+    for name, value in frames[0].items():
+        values = [frame[name] for frame in frames]
+        joined[name] = value if name in same else values if isinstance(value, str) else np.stack(values)
+    return joined
+
+
+def _facts(clip: Any) -> dict[str, Any]:
+    names = ("latitude_deg", "month", "day", "hour", "sun_elevation_deg", "speed_mps")
+    return {**{name: clip[name] for name in names}, **clip["weather"]}

@@ -2,26 +2,56 @@
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, version
 from typing import Any
+
+import numpy as np
+
+from scenegen.foundation.canonical import digest
 
 VOLATILE_KEYS = ("pairs", "out", "jobs", "engine", "part")
 """Top-level recipe keys that do not change any sample, hence not part of ``recipe_id``."""
 
+_PACKAGES = {"numpy": "numpy", "cv2": "opencv-python-headless", "OpenEXR": "OpenEXR", "scipy": "scipy"}
+
 
 def recipe_id(recipe: Mapping[str, Any], scene_semantics: int) -> str:
     """SHA-256 of the canonical JSON of the resolved recipe without `VOLATILE_KEYS` and the scene semantics version."""
-    raise NotImplementedError
+    return digest({"recipe": stable(recipe), "scene_semantics": scene_semantics})
+
+
+def stable(recipe: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the part of a recipe that decides samples."""
+    return {key: value for key, value in recipe.items() if key not in VOLATILE_KEYS}
 
 
 def fingerprint(render: Mapping[str, str]) -> dict[str, str]:
     """Versions and CPU class that decide bytes: what the renderer says of itself, plus numpy, cv2, OpenEXR, CPU."""
-    raise NotImplementedError
+    return {**render, **{name: _version(package) for name, package in _PACKAGES.items()}, "cpu": cpu_class()}
+
+
+def cpu_class() -> str:
+    """Machine type and the widest vector instructions numpy found: float results depend on both."""
+    features = _cpu_features()
+    widest = next(
+        (name for name in ("AVX512_SKX", "AVX512F", "AVX2", "AVX", "SVE", "ASIMD") if features.get(name)),
+        "base",
+    )
+    return f"{platform.machine()}-{widest.lower()}"
+
+
+def _cpu_features() -> dict[str, bool]:
+    info = np.show_config(mode="dicts") or {}
+    found = info.get("SIMD Extensions", {}).get("found", [])
+    base = info.get("SIMD Extensions", {}).get("baseline", [])
+    return dict.fromkeys([*found, *base], True)
 
 
 def fingerprint_id(fingerprint: Mapping[str, str]) -> str:
     """First 16 hexadecimal digits of the SHA-256 of the fingerprint."""
-    raise NotImplementedError
+    return digest(dict(fingerprint))[:16]
 
 
 def make_lock(
@@ -47,4 +77,22 @@ def make_lock(
     git_sha : str or None
         Commit of the code, if it is known.
     """
-    raise NotImplementedError
+    prints = fingerprint(render)
+    return {
+        "name": name,
+        "recipe": {k: v for k, v in recipe.items() if k == "pairs" or k not in VOLATILE_KEYS},
+        "recipe_id": recipe_id(recipe, scene_semantics),
+        "scene_semantics": scene_semantics,
+        "fingerprint": prints,
+        "fingerprint_id": fingerprint_id(prints),
+        "mixed_with": [],
+        "software": {"thermal-scenegen": _version("thermal-scenegen"), "python": platform.python_version()},
+        "git_sha": git_sha,
+    }
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "unknown"

@@ -1,0 +1,92 @@
+"""What holds for the arrays of every stored frame: guarded before encoding, proven again by `verify`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from scenegen.classes import CLASSES, Semantic
+from scenegen_datasets.layers import MAX_COUNT
+
+_EDGE_PX = 1e-3
+"""Flow and the covisibility test round differently in float32; a point this near to the edge may be either."""
+
+
+def violations(arrays: Mapping[str, NDArray[Any]]) -> list[str]:
+    """Return what is wrong with the layers of one frame, in words; empty if nothing is."""
+    checks = {
+        "thermal": _thermal,
+        "depth": _depth,
+        "radiance": _radiance,
+        "temperature": _temperature,
+        "semantic": _semantic,
+        "flow": _flow,
+        "flow_back": _flow,
+        "normal": _normal,
+    }
+    found = []
+    for name, check in checks.items():
+        if name in arrays:
+            found += [f"{name}: {text}" for text in check(arrays, name)]
+    return found
+
+
+def _thermal(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
+    if arrays[name].max() > MAX_COUNT:
+        yield f"counts above {MAX_COUNT}"
+
+
+def _depth(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
+    depth = arrays[name]
+    if not (depth > 0).all():
+        yield "not positive (or NaN)"
+    if "semantic" in arrays and not np.array_equal(np.isinf(depth), arrays["semantic"] == Semantic.SKY):
+        yield "infinite elsewhere than exactly in the sky"
+
+
+def _radiance(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
+    low, high = arrays[name].min(), arrays[name].max()
+    if not (low > 0 and np.isfinite(high)):
+        yield "not finite and positive"
+
+
+def _temperature(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
+    low, high = arrays[name].min(), arrays[name].max()
+    if not (low >= 0 and np.isfinite(high)):
+        yield "not finite, or below 0 K"
+    if "semantic" in arrays and not np.array_equal(arrays[name] == 0, arrays["semantic"] == Semantic.SKY):
+        yield "0 K elsewhere than exactly in the sky"
+
+
+def _semantic(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
+    if arrays[name].max() >= len(CLASSES):
+        yield f"class id {arrays[name].max()} is not in the class list"
+    sky = arrays[name] == Semantic.SKY
+    for ids in ("instance", "material"):
+        if ids in arrays and arrays[ids][sky].any():
+            yield f"sky has an {ids} id"
+        if ids == "material" and ids in arrays and not arrays[ids][~sky].all():
+            yield "a surface has no material"
+
+
+def _flow(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
+    flow = arrays[name]
+    if np.isinf(flow).any():
+        yield "infinite"
+    seen = arrays.get(name.replace("flow", "covisible"))
+    if seen is None:
+        return
+    rows, columns = np.nonzero(seen)
+    to = flow[rows, columns] + np.stack([columns, rows], axis=-1) + 0.5
+    limit = np.array([flow.shape[1], flow.shape[0]]) + _EDGE_PX
+    if not ((to >= -_EDGE_PX) & (to <= limit)).all():
+        yield "a covisible point lies outside the other image (or is NaN)"
+
+
+def _normal(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
+    length = np.einsum("...k,...k->...", arrays[name], arrays[name])
+    if not ((np.abs(length - 1) < 1e-3) | (length == 0)).all():
+        yield "not of unit length"
