@@ -63,8 +63,8 @@ class DaySolution:
     Attributes
     ----------
     temperature_K : float64 (surfaces, samples)
-    loss_Wm2K : float64 (surfaces,)
-        Daily mean slope of all losses to sky and air by surface temperature.
+    slope_Wm2K : float64 (surfaces, samples)
+        Derivative of all losses to sky and air by surface temperature, at that temperature.
     residual_Wm2 : float
         Largest imbalance left.
     steps : int
@@ -72,7 +72,7 @@ class DaySolution:
     """
 
     temperature_K: Float64[np.ndarray, "surfaces samples"]
-    loss_Wm2K: Float64[np.ndarray, "surfaces"]
+    slope_Wm2K: Float64[np.ndarray, "surfaces samples"]
     residual_Wm2: float
     steps: int
 
@@ -80,7 +80,7 @@ class DaySolution:
 def surface_losses(
     temperature_K: Float64[np.ndarray, "surfaces samples"], skins: Skins, air: Air
 ) -> tuple[Float64[np.ndarray, "surfaces samples"], Float64[np.ndarray, "surfaces samples"]]:
-    """Flux lost by emission, convection and evaporation, and its slope [W/m^2, W m^-2 K^-1]."""
+    """Flux lost by emission, convection and evaporation, and a safe slope for Newton [W/m^2, W m^-2 K^-1]."""
     eps = skins.emissivity[:, None]
     excess = temperature_K - air.temperature_K
     h = convection_coefficient(excess, skins.cos_tilt[:, None], air.wind_mps, skins.roughness_factor[:, None])
@@ -140,5 +140,13 @@ def solve_day(
         T = np.clip(T + move, _LOW_K, _HIGH_K)
         if float(np.abs(move).max(initial=0.0)) < _TOLERANCE_K:
             break
-    _, slope = surface_losses(T, skins, air)
-    return DaySolution(T, slope.mean(axis=1), worst, steps)
+    return DaySolution(T, loss_slope(T, skins, air), worst, steps)
+
+
+def loss_slope(
+    temperature_K: Float64[np.ndarray, "surfaces samples"], skins: Skins, air: Air
+) -> Float64[np.ndarray, "surfaces samples"]:
+    """Derivative of all losses by surface temperature [W m^-2 K^-1], by central difference over a tenth of a kelvin."""
+    above, _ = surface_losses(temperature_K + 0.05, skins, air)
+    below, _ = surface_losses(temperature_K - 0.05, skins, air)
+    return np.asarray((above - below) / 0.1)

@@ -1,4 +1,4 @@
-"""Temperatures of single sites, linear in what each of them sees, around solutions of their class."""
+"""Temperatures of single sites, expanded in what each of them sees around two solutions of their class."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Expansion:
     ) -> Expansion:
         """Expand around class solutions that were made with the beam ``direct * cos_sun``."""
         traits, near = days.traits, days.neighbours
-        felt = memory(solution.loss_Wm2K, days.admittance, day.hour.size)
+        felt = memory(solution.slope_Wm2K, days.admittance)
         short, long = traits.absorptance[:, None] * felt, traits.skins.emissivity[:, None] * felt
         beam = short * traits.direct_factor[:, None] * day.direct_Wm2
         ground = _felt(short, day.ground_short_Wm2[None]) + _felt(long, day.ground_long_Wm2[None])
@@ -89,10 +89,15 @@ def site_temperatures(
     beam = single(exposure.beam[sites])
     sky, share = exposure.sky_view[sites], exposure.neighbour_share[sites]
     warm, cool = lit.sun_K(c, beam), shaded.sun_K(c, beam)
-    full = lit.full_sun[c]
-    sunny = np.clip(warm / full, 0.0, 1.0) if full > _LEAST_SUN_K else np.ones_like(warm)
-    T = sunny * (warm + lit.rest_K(c, sky, share)) + (1.0 - sunny) * (cool + shaded.rest_K(c, sky, share))
-    return np.asarray(T, dtype=np.float32)
+    warmest, coolest = lit.full_sun[c], shaded.full_sun[c]
+    a, b = lit.rest_K(c, sky, share) + warmest, shaded.rest_K(c, sky, share)
+    if min(warmest, coolest) < _LEAST_SUN_K:
+        return np.asarray(b + cool, dtype=np.float32)
+    s = np.clip(0.5 * (warm / warmest + cool / coolest), 0.0, 1.0)
+    # Cubic through both ends with both slopes, plus what the timing of a site's sun differs from s times the full sun.
+    bend = coolest * (1.0 - s) - warmest * s + (a - b) * (2.0 * s - 1.0)
+    timing = s * (warm - s * warmest) + (1.0 - s) * (cool - s * coolest)
+    return np.asarray(b + s * (a - b) + s * (1.0 - s) * bend + timing, dtype=np.float32)
 
 
 _LEAST_SUN_K = np.float32(1e-3)

@@ -75,7 +75,7 @@ class HeatModel:
         short, _ = mean_irradiance(self.outlook, days.neighbours, day)
         if self.exposure.sun_hour.size:
             short = short + day.direct_Wm2 * self.outlook.beam[:, day.nearest(self.exposure.sun_hour)]
-        solar = solar_memory(memory(days.lit.loss_Wm2K, days.admittance, day.hour.size), short)
+        solar = solar_memory(memory(days.lit.slope_Wm2K, days.admittance), short)
         entries = len(self.world.palette)
         area = np.bincount(self.classes.palette, weights=self.classes.area_m2, minlength=entries)
         total = np.bincount(
