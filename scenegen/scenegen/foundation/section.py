@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 
 class Section(BaseModel):
@@ -14,13 +14,13 @@ class Section(BaseModel):
 
 
 def _no_bool(value: Any) -> Any:
-    if isinstance(value, bool):
-        raise ValueError("expected a number, not yes/no")
+    if isinstance(value, bool | str):
+        raise ValueError(f"expected a number, not {value!r}")
     return value
 
 
 Number = Annotated[float, BeforeValidator(_no_bool)]
-"""A finite real number; ``true`` is not 1."""
+"""A finite real number; ``true`` is not 1 and ``"300"`` is not 300."""
 
 Count = Annotated[int, BeforeValidator(_no_bool), Field(strict=True)]
 """A whole number; ``true`` is not 1 and ``3.0`` is not 3."""
@@ -34,9 +34,11 @@ def _span(value: Any) -> Any:
 
 def _ordered(value: tuple[float, float]) -> tuple[float, float]:
     if value[0] > value[1]:
-        raise ValueError(f"the range [{value[0]:g}, {value[1]:g}] is upside down")
+        raise ValueError(
+            f"the range [{value[0]:g}, {value[1]:g}] is upside down; write the smaller number first"
+        )
     return value
 
 
-Span = Annotated[tuple[Number, Number], BeforeValidator(_span)]
+Span = Annotated[tuple[Number, Number], BeforeValidator(_span), AfterValidator(_ordered)]
 """A closed range to draw from, ``[low, high]``; a single number means that very value."""

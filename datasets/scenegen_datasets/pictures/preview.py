@@ -1,0 +1,101 @@
+"""The ``preview`` folder of a dataset: a contact sheet and a short flight. The same bytes for the same data."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from scenegen.foundation.atomic import make_directories, write_atomic
+from scenegen.foundation.errors import InputError
+from scenegen_datasets.layers import check_layers
+from scenegen_datasets.loader import PairDataset
+from scenegen_datasets.pictures.animation import animate
+from scenegen_datasets.pictures.sheet import contact_sheet
+from scenegen_datasets.pictures.shot import Shot
+from scenegen_datasets.store import read_lock
+from scenegen_render.sensor.scale import CountScale, counts_to_brightness_K
+
+FOLDER = "preview"
+SHEET = f"{FOLDER}/contact_sheet.png"
+FLIGHT = f"{FOLDER}/flight.webp"
+
+MAX_ROWS = 6
+MAX_FRAMES = 48
+
+_SHOWN = ("thermal", "depth", "flow", "semantic", "instance")
+_MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+
+
+def write_preview(root: Path) -> tuple[Path, Path]:
+    """Draw both pictures into a dataset, finished or growing.
+
+    Returns
+    -------
+    (Path, Path)
+        Contact sheet (PNG) and flight (animated WebP).
+
+    Raises
+    ------
+    InputError
+        If there is no dataset, or nothing in it yet.
+    """
+    sheet, flight = draw_preview(root)
+    make_directories(root, FOLDER)
+    write_atomic(root / SHEET, sheet)
+    write_atomic(root / FLIGHT, flight)
+    return root / SHEET, root / FLIGHT
+
+
+def draw_preview(root: Path) -> tuple[bytes, bytes]:
+    """Contact sheet (PNG) and flight (animated WebP) of a dataset."""
+    recipe = read_lock(root)["recipe"]
+    stored = check_layers(recipe["layers"])
+    pairs = PairDataset(root, layers=[name for name in _SHOWN if name in stored], allow_partial=True)
+    if len(pairs) == 0:
+        raise InputError(f"{root} holds no pair yet; let a render finish its first clip")
+    low_K, high_K = recipe["sensor"]["scale_K"]
+    scale = CountScale(low_K, high_K, tuple(recipe["camera"]["band_um"]), recipe["sensor"]["linear_in"])
+    per_clip = int(recipe["pairs_per_clip"])
+    clips = max(len(pairs) // per_clip, 1)
+    rows = min(MAX_ROWS, max(clips, min(2, len(pairs))))
+    chosen = [int((k + 0.5) * len(pairs) / rows) for k in range(rows)]
+    shots = [_shot(pairs[i], scale) for i in chosen]
+    first = per_clip * (clips // 2)
+    flight = [
+        _shot(pairs[i], scale) for i in range(first, min(first + min(per_clip, MAX_FRAMES), len(pairs)))
+    ]
+    height, width = shots[0].depth.shape
+    subtitle = f"{len(pairs):,} pairs   {width} x {height} px   maps: {', '.join(recipe['map'])}"
+    file = io.BytesIO()
+    contact_sheet(shots, read_lock(root)["name"], subtitle).save(file, "PNG", compress_level=9)
+    return file.getvalue(), animate(flight)
+
+
+def _shot(sample: dict[str, Any], scale: CountScale) -> Shot:
+    layers = {
+        name: np.asarray(sample[name]) for name in ("depth", "semantic", "instance", "flow") if name in sample
+    }
+    thermal_K = counts_to_brightness_K(np.asarray(sample["thermal"], np.uint16), scale)
+    return Shot(sample["key"], _facts(sample["facts"]), thermal_K, **layers)
+
+
+def _facts(clip: dict[str, Any]) -> str:
+    """Hour, date, place and weather as a reader wants them."""
+    minutes = int(float(clip["hour"]) * 60.0) % 1440
+    latitude, cloud = float(clip["latitude_deg"]), float(clip["cloud_fraction"])
+    sky = "clear" if cloud < 0.15 else "overcast" if cloud > 0.9 else f"{round(8 * cloud)}/8 cloud"
+    return "   ".join(
+        (
+            f"{minutes // 60:02d}:{minutes % 60:02d} solar time",
+            f"{int(clip['day'])} {_MONTHS[int(clip['month']) - 1]}",
+            f"{abs(latitude):.0f}°{'N' if latitude >= 0 else 'S'}",
+            f"sun {float(clip['sun_elevation_deg']):+.0f}°",
+            sky,
+            f"wind {float(clip['wind_mps']):.1f} m/s",
+            f"mean air {float(clip['air_mean_K']) - 273.15:.0f} °C",
+            f"flying {float(clip['speed_mps']):.0f} m/s",
+        )
+    )

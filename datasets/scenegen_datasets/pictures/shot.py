@@ -1,0 +1,40 @@
+"""One frame as the pictures need it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float32, UInt8, UInt32
+
+
+@dataclass(frozen=True, eq=False)
+class Shot:
+    """The layers of one frame and the words that belong to them.
+
+    Attributes
+    ----------
+    name : str
+        Of the clip and frame.
+    facts : str
+        Hour, date, latitude, weather in one line.
+    thermal_K : float32 (rows, columns)
+        What the camera reported, as brightness temperature [K].
+    depth : float32 (rows, columns)
+        Planar z [m], +inf for sky.
+    semantic, instance, flow : arrays as in `scenegen_render.frame.Frame`, or None where the dataset has none
+    """
+
+    name: str
+    facts: str
+    thermal_K: Float32[np.ndarray, "rows columns"]
+    depth: Float32[np.ndarray, "rows columns"]
+    semantic: UInt8[np.ndarray, "rows columns"] | None = None
+    instance: UInt32[np.ndarray, "rows columns"] | None = None
+    flow: Float32[np.ndarray, "rows columns 2"] | None = None
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of the layers that are there, in the order they are shown."""
+        optional = {"semantic": self.semantic, "instance": self.instance, "flow": self.flow}
+        return ("thermal", "depth", *(name for name, layer in optional.items() if layer is not None))

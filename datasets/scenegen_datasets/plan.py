@@ -1,0 +1,47 @@
+"""The plan: an endless, deterministic sequence of worlds and clips, of which a job makes the first so many.
+
+Nothing here depends on how many pairs are asked for, so a dataset can grow: its first clips stay what they were.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator, Sequence
+
+from scenegen_datasets.job import ClipJob
+
+SPLIT_PERIOD = 10
+"""Worlds per repetition of the split pattern."""
+
+_SPLIT_OF = {1: "val", 2: "test"}
+
+
+def split_of(world: int) -> str:
+    """Split of a world by its index within its map: worlds 1 and 2 of each ten are kept for validation and test.
+
+    A whole world belongs to one split, because frames of one world share buildings; val and test come early, so that
+    a dataset of three worlds has all splits.
+    """
+    return _SPLIT_OF.get(world % SPLIT_PERIOD, "train")
+
+
+def clips(maps: Sequence[str], clips_per_world: int, pairs_per_clip: int) -> Iterator[ClipJob]:
+    """Yield all clips there will ever be, in plan order; maps take turns world by world.
+
+    Parameters
+    ----------
+    maps : sequence of str
+        At least one, without repetition.
+    clips_per_world, pairs_per_clip : int
+        At least 1.
+    """
+    for ordinal in itertools.count():
+        turn, clip = divmod(ordinal, clips_per_world)
+        world, which = divmod(turn, len(maps))
+        yield ClipJob(ordinal, maps[which], world, clip, split_of(world), pairs_per_clip)
+
+
+def plan(maps: Sequence[str], clips_per_world: int, pairs_per_clip: int, pairs: int) -> tuple[ClipJob, ...]:
+    """Clips that hold at least `pairs` pairs: the first ``ceil(pairs / pairs_per_clip)`` of `clips`."""
+    count = -(-pairs // pairs_per_clip)
+    return tuple(itertools.islice(clips(maps, clips_per_world, pairs_per_clip), count))
