@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenegen.classes import CLASSES, Semantic
+from scenegen.materials.table import materials
 from scenegen_datasets.layers import MAX_COUNT
 
 _EDGE_PX = 1e-3
@@ -23,6 +25,7 @@ def violations(arrays: Mapping[str, NDArray[Any]]) -> list[str]:
         "radiance": _radiance,
         "temperature": _temperature,
         "semantic": _semantic,
+        "material": _material,
         "flow": _flow,
         "flow_back": _flow,
         "normal": _normal,
@@ -70,6 +73,21 @@ def _semantic(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
             yield f"sky has an {ids} id"
         if ids == "material" and ids in arrays and not arrays[ids][~sky].all():
             yield "a surface has no material"
+
+
+def _material(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
+    known = _known_materials()[arrays[name]]
+    if not known.all():
+        yield f"material id {arrays[name][~known].min()} is not in the material table"
+
+
+@cache
+def _known_materials() -> NDArray[np.bool_]:
+    """Look-up table over all uint16: sky, the table's ids, and a user's own from 1,000 on."""
+    known = np.zeros(1 << 16, bool)
+    known[[0, *(m.id for m in materials().values())]] = True
+    known[1000:] = True
+    return known
 
 
 def _flow(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:

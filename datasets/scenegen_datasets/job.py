@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 SPLITS = ("train", "val", "test")
 """Names of the splits; the index stores positions in this tuple."""
+
+_MAP = re.compile(r"[a-z][a-z0-9_]{0,23}")
+_BOUNDS = (("ordinal", 0, 2**32 - 1), ("world", 0, 99_999), ("clip", 0, 999), ("pairs", 1, 9_998))
 
 
 @dataclass(frozen=True, order=True)
@@ -24,6 +28,11 @@ class ClipJob:
         One of `SPLITS`.
     pairs : int
         Pairs in the clip; it stores one frame more, because frame 0 has no predecessor.
+
+    Raises
+    ------
+    ValueError
+        If a field is out of range: paths are made of them.
     """
 
     ordinal: int
@@ -32,6 +41,16 @@ class ClipJob:
     clip: int
     split: str
     pairs: int
+
+    def __post_init__(self) -> None:
+        if not (isinstance(self.map, str) and _MAP.fullmatch(self.map)):
+            raise ValueError(f"'{self.map}' cannot be the name of a map")
+        if self.split not in SPLITS:
+            raise ValueError(f"'{self.split}' is not a split")
+        for name, least, most in _BOUNDS:
+            value = getattr(self, name)
+            if type(value) is not int or not least <= value <= most:
+                raise ValueError(f"{name} is {value!r}, not a whole number from {least} to {most}")
 
     @property
     def frames(self) -> int:

@@ -105,6 +105,14 @@ DEFAULT_LAYERS: tuple[str, ...] = (
 )
 """What is written unless the recipe says otherwise; ``flow_back``, ``covisible_back`` and ``normal`` on request."""
 
+_MAX_PIXELS = 1 << 24
+
+
+def max_member_bytes(shape: tuple[int, int]) -> int:
+    """Bytes a sound member of this image size stays below; 0 for an image size nobody renders."""
+    rows, columns = shape
+    return rows * columns * 64 + (1 << 20) if 0 < rows * columns <= _MAX_PIXELS else 0
+
 
 def member_field(suffix: str) -> str:
     """Name of a member in the index: its suffix up to the first dot."""

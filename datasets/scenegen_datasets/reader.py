@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from scenegen.foundation.errors import CorruptFrameError
 from scenegen_datasets.index import job_of
-from scenegen_datasets.layers import Layer, member_field
+from scenegen_datasets.layers import Layer, max_member_bytes, member_field
 from scenegen_datasets.pixels import decode_member
 
 _MAX_OPEN = 64
@@ -41,8 +41,9 @@ class ShardReader:
         name = member_field(member)
         where = f"{job.shard}: {job.key(int(row['frame']))}.{member}"
         size = int(row[f"{name}_size"])
-        if size > int(row["shard_size"]):
-            raise CorruptFrameError(f"{where}: larger than its shard")
+        shape = (int(row["height_px"]), int(row["width_px"]))
+        if size > min(int(row["shard_size"]), max_member_bytes(shape)):
+            raise CorruptFrameError(f"{where}: larger than its shard or its image allows")
         try:
             data = os.pread(self._descriptor(job.shard), size, int(row[f"{name}_offset"]))
         except OSError as error:
@@ -50,7 +51,7 @@ class ShardReader:
         if len(data) != size or zlib.crc32(data) != int(row[f"{name}_crc32"]):
             raise CorruptFrameError(f"{where}: damaged; run `scenegen verify`")
         try:
-            return decode_member(member, layers, data, (int(row["height_px"]), int(row["width_px"])))
+            return decode_member(member, layers, data, shape)
         except CorruptFrameError as error:
             raise CorruptFrameError(f"{where}: {error}") from None
 

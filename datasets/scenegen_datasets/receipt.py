@@ -10,7 +10,7 @@ from typing import Any
 from scenegen.foundation.errors import DatasetError
 from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.job import SPLITS, ClipJob
-from scenegen_datasets.layers import LAYERS, MEMBERS
+from scenegen_datasets.layers import LAYERS, MEMBERS, max_member_bytes
 from scenegen_datasets.seal import read_bounded, sealed, unsealed
 
 SCHEMA = 1
@@ -164,11 +164,12 @@ def _inconsistency(receipt: Receipt, path: str) -> str | None:
         return "names unknown layers"
     if [f.key for f in receipt.frames] != [job.key(k) for k in range(job.frames)]:
         return f"holds {len(receipt.frames)} frames where the {job.frames} of {job.name} belong"
+    limit = max_member_bytes((receipt.clip.height_px, receipt.clip.width_px))
     for frame in receipt.frames:
         for suffix, span in frame.members.items():
             if not (type(span.offset) is type(span.size) is type(span.crc32) is int):
                 return f"{frame.key}.{suffix}: offset and size are not whole numbers"
-            if span.offset < 512 or span.size < 0 or span.offset + span.size > receipt.size:
+            if not (512 <= span.offset <= receipt.size - span.size and 0 <= span.size <= limit):
                 return f"{frame.key}.{suffix} lies outside the shard"
     return None
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+
 from scenegen.foundation.lock import DirectoryLock
 from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.commit import commit_clip

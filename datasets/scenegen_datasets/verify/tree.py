@@ -1,0 +1,159 @@
+"""Check what binds the clips together: manifest, index, clip list, description, and what does not belong."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from scenegen.foundation.atomic import is_partial
+from scenegen.foundation.errors import DatasetError
+from scenegen_datasets.content import content_id
+from scenegen_datasets.description import read_description
+from scenegen_datasets.index import ROW, open_index
+from scenegen_datasets.manifest import file_sha256, read_manifest
+from scenegen_datasets.seal import read_bounded
+from scenegen_datasets.store import CLIPS, DATASET, INDEX, MANIFEST, RUN_LOG, WRITER_LOCK, read_lock
+from scenegen_datasets.verify.clip import ClipCheck
+from scenegen_datasets.verify.report import Finding
+
+_MAX_CLIPS_BYTES = 1 << 30
+
+
+def check_tree(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
+    """Check the whole against its clips; `checks` in any order."""
+    sound = [c for _, c in sorted((c.job, c) for c in checks if c.job is not None)]
+    yield from _leaks(sound)
+    files, odd = _walk(root)
+    yield from odd
+    if DATASET not in files:
+        yield Finding(DATASET, "missing: the dataset still grows; finish it with the same render command")
+        return
+    yield from _manifest(root, files, sound)
+    yield from _description(root, sound)
+    yield from _clips(root, sound)
+    yield from _index(root, sound)
+
+
+def _leaks(checks: Sequence[ClipCheck]) -> Iterator[Finding]:
+    splits: dict[tuple[str, int], str] = {}
+    names: dict[str, str] = {}
+    for check in checks:
+        job = check.job
+        assert job is not None
+        if splits.setdefault((job.map, job.world), job.split) != job.split:
+            yield Finding(check.receipt, f"world {job.map}-{job.world:05d} is in two splits")
+        if names.setdefault(job.name, check.receipt) != check.receipt:
+            yield Finding(check.receipt, f"clip {job.name} is there twice")
+
+
+def _walk(root: Path) -> tuple[set[str], list[Finding]]:
+    """Return all plain files of the dataset, and what should not be in it at all."""
+    files: set[str] = set()
+    odd: list[Finding] = []
+    for directory, folders, names in os.walk(root):
+        here = Path(directory).relative_to(root)
+        for name in list(folders):
+            if (root / here / name).is_symlink():
+                odd.append(Finding(str(here / name), "a symbolic link"))
+            if here == Path() and name.startswith("."):
+                folders.remove(name)  # what version control and hubs keep beside a dataset
+        for name in names:
+            path = here / name
+            if is_partial(name):
+                odd.append(Finding(str(path), "left behind by a killed writer; the next render removes it"))
+            elif (root / path).is_symlink():
+                odd.append(Finding(str(path), "a symbolic link"))
+            elif not (here == Path() and name.startswith(".")):
+                files.add(str(path))
+    return files, odd
+
+
+def _manifest(root: Path, files: set[str], checks: Sequence[ClipCheck]) -> Iterator[Finding]:
+    try:
+        sums = read_manifest(root / MANIFEST)
+    except DatasetError as error:
+        yield Finding(MANIFEST, _bare(error))
+        return
+    shards = {c.job.shard: c.sha256 for c in checks if c.job is not None}
+    for path, expected in sums.items():
+        if path not in files:
+            yield Finding(path, "missing")
+        elif path in shards:  # its bytes were compared with the receipt already
+            if shards[path] != expected:
+                yield Finding(path, "the receipt's SHA-256 differs from the manifest")
+        elif not path.startswith("shards/") and file_sha256(root / path) != expected:
+            yield Finding(path, "SHA-256 differs from the manifest")
+    outside = {MANIFEST, RUN_LOG, WRITER_LOCK}
+    for path in sorted(files - sums.keys() - outside):
+        if not path.startswith(("preview/", RUN_LOG)):
+            yield Finding(path, "does not belong to the dataset (not in the manifest)")
+
+
+def _description(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
+    try:
+        told = read_description(root / DATASET)
+        lock = read_lock(root)
+    except DatasetError as error:
+        yield Finding(DATASET, _bare(error))
+        return
+    jobs = [c.job for c in checks if c.job is not None]
+    facts: dict[str, Any] = {
+        "content_id": content_id(c.digest for c in checks),
+        "recipe_id": lock["recipe_id"],
+        "counts": {
+            "pairs": sum(j.pairs for j in jobs),
+            "frames": sum(j.frames for j in jobs),
+            "clips": len(jobs),
+            "worlds": len({(j.map, j.world) for j in jobs}),
+            "shard_bytes": sum(c.size for c in checks),
+        },
+    }
+    for name, value in facts.items():
+        if told.get(name) != value:
+            yield Finding(DATASET, f"{name} is {_short(told.get(name))}, the receipts give {_short(value)}")
+    for name in _strings(told.get("missing")):
+        yield Finding(DATASET, f"clip {name} of the plan was not made; run the same render command again")
+
+
+def _clips(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
+    try:
+        told = read_bounded(root / CLIPS, _MAX_CLIPS_BYTES).splitlines()
+    except DatasetError as error:
+        yield Finding(CLIPS, _bare(error))
+        return
+    have = {c.line: c for c in checks}
+    for number, line in enumerate(told, 1):
+        if line not in have:
+            yield Finding(CLIPS, f"line {number} agrees with no receipt")
+    if len(told) != len(checks):
+        yield Finding(CLIPS, f"{len(told)} clips, there are {len(checks)} sound receipts")
+
+
+def _index(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
+    total = sum(c.frames for c in checks)
+    try:
+        rows = open_index(root / INDEX, total)
+    except DatasetError as error:
+        yield Finding(INDEX, _bare(error))
+        return
+    at = 0
+    for check in checks:
+        if rows[at : at + check.frames].tobytes() != check.rows:
+            yield Finding(INDEX, f"rows {at}..{at + check.frames - 1} differ from {check.receipt}")
+        at += check.frames
+    assert at * ROW.itemsize == sum(len(c.rows) for c in checks)
+
+
+def _strings(value: Any) -> list[str]:
+    return [str(v) for v in value] if isinstance(value, list) else []
+
+
+def _bare(error: DatasetError) -> str:
+    """Drop the absolute path in front of a reason; the finding names the file."""
+    return str(error).partition(": ")[2] or str(error)
+
+
+def _short(value: Any) -> str:
+    return repr(value) if not isinstance(value, Mapping) else ", ".join(f"{k} {v}" for k, v in value.items())
