@@ -1,0 +1,67 @@
+"""``run.log.jsonl``: when, where and at what cost a dataset was made. Outside the manifest: it differs every time."""
+
+from __future__ import annotations
+
+import datetime
+import json
+import os
+import platform
+from pathlib import Path
+from types import TracebackType
+from typing import Any, TextIO
+
+from scenegen.foundation.errors import InputError
+from scenegen_datasets.store import RUN_LOG
+
+
+class RunLog:
+    """Appends one JSON object per line; a line is whole or absent.
+
+    Parameters
+    ----------
+    root : Path
+        Dataset directory.
+    """
+
+    def __init__(self, root: Path) -> None:
+        self.path = root / RUN_LOG
+        self._file: TextIO | None = None
+
+    def __enter__(self) -> RunLog:
+        try:
+            descriptor = os.open(
+                self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666
+            )
+        except OSError as error:
+            raise InputError(f"cannot write {self.path}: {error.strerror}") from None
+        self._file = os.fdopen(descriptor, "a", encoding="utf-8")
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._file is not None:
+            self._file.close()
+        self._file = None
+
+    def write(self, event: str, **facts: Any) -> None:
+        """Append an event. A full disk silences the log, it does not stop the job."""
+        now = datetime.datetime.now(datetime.UTC).isoformat(timespec="milliseconds")
+        line = json.dumps({"time": now, "event": event, **facts}, ensure_ascii=False)
+        try:
+            assert self._file is not None
+            self._file.write(line + "\n")
+            self._file.flush()
+        except OSError:
+            return
+
+
+def machine() -> dict[str, Any]:
+    """What this machine is, for the log."""
+    cpus = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    return {
+        "host": platform.node(),
+        "system": platform.platform(),
+        "python": platform.python_version(),
+        "cpus": cpus,
+    }

@@ -1,0 +1,183 @@
+"""Where clips are made: a worker that keeps one world standing and films it clip by clip."""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Callable, Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from scenegen.climate.knobs import draw_weather_and_hour
+from scenegen.climate.sun import sun_direction
+from scenegen.foundation.rng import stream
+from scenegen.thermal_state import ThermalState
+from scenegen_datasets.clip import ClipRecord
+from scenegen_datasets.commit import ShardWriter
+from scenegen_datasets.encode import FrameMeta, encode_frame
+from scenegen_datasets.job import ClipJob
+from scenegen_datasets.recipe import Recipe
+from scenegen_datasets.stage import Stage, set_stage
+from scenegen_datasets.stopwatch import Stopwatch
+from scenegen_flythrough.fly import fly
+from scenegen_flythrough.trajectory import Trajectory
+from scenegen_render.bake import bake
+from scenegen_render.scene import release_memory
+from scenegen_render.sensor.scale import MAX_COUNT, CountScale
+from scenegen_render.sensor.sense import Microbolometer
+from scenegen_render.trace.lit import Lit
+from scenegen_render.trace.tracer import Tracer
+
+Told = Callable[[dict[str, Any]], None]
+"""Hears how far a clip is; called once per stage and frame."""
+
+
+class Studio:
+    """Makes the clips of one dataset.
+
+    Parameters
+    ----------
+    recipe : Recipe
+    root : Path
+        Dataset directory.
+    fingerprint : str
+        Id of the render fingerprint, for the receipts.
+    """
+
+    def __init__(self, recipe: Recipe, root: Path, fingerprint: str) -> None:
+        self._recipe, self._root, self._fingerprint = recipe, root, fingerprint
+        self._camera = recipe.camera.camera()
+        self._tracer = Tracer(self._camera, recipe.tracing)
+        self._watch = Stopwatch()
+        self._stage: Stage | None = None
+        self._standing: tuple[str, int] | None = None
+
+    def make(self, job: ClipJob, told: Told) -> dict[str, Any]:
+        """Film and commit one clip.
+
+        Returns
+        -------
+        dict
+            What it cost: ``stages`` (see `Stopwatch.take`), ``bytes``, ``rejected`` flights.
+        """
+        watch = self._watch
+        stage = self._at(job, told)
+        path = ("clip", job.map, job.world, job.clip)
+        with watch("weather"):
+            rng = stream(self._recipe.seed, *path, "weather")
+            weather, hour = draw_weather_and_hour(self._recipe.climate, stage.exposure.season, rng)
+        with watch("solve"):
+            state = stage.heat.solve(weather, hour)
+        with watch("bake"):
+            irradiance = bake(
+                stage.loaded, stage.exposure, state, self._camera.band_um, self._recipe.exposure
+            )
+        with watch("light"):
+            lit = self._tracer.light(stage.loaded, state, irradiance)
+        with watch("fly"):
+            rng = stream(self._recipe.seed, *path, "flight")
+            flight = fly(stage.world, self._recipe.flight, job.frames, rng, stage.airspace)
+        size = self._film(job, lit, flight, self._record(job, stage, state, flight), told)
+        del lit
+        return {"stages": watch.take(), "bytes": size, "rejected": flight.rejected}
+
+    def leave(self) -> None:
+        """Tear the standing world down and give its memory back."""
+        if self._stage is not None:
+            self._stage.release()
+        self._stage = self._standing = None
+        gc.collect()
+        release_memory()
+
+    def _at(self, job: ClipJob, told: Told) -> Stage:
+        wanted = (job.map, job.world)
+        if self._stage is None or self._standing != wanted:
+            self.leave()
+            told({"stage": f"building {job.map} {job.world}"})
+            self._stage = set_stage(self._recipe, job.map, job.world, self._watch)
+            self._standing = wanted
+        return self._stage
+
+    def _film(self, job: ClipJob, lit: Lit, flight: Trajectory, record: ClipRecord, told: Told) -> int:
+        rng = stream(self._recipe.seed, "clip", job.map, job.world, job.clip, "sensor")
+        detector = Microbolometer(self._camera, self._recipe.sensor, rng)
+        layers, watch, poses = self._recipe.stored_layers, self._watch, flight.world_from_camera
+        with ShardWriter(self._root, job) as shard:
+            for k in range(job.frames):
+                time_s = float(flight.time_s[k + 1])
+                with watch("trace"):
+                    frame = self._tracer.frame(lit, poses[k + 1], poses[k + 2], poses[k])
+                with watch("sense"):
+                    reading = detector.read(frame.radiance, time_s)
+                with watch("encode"):
+                    meta = FrameMeta(
+                        time_s, poses[k + 1], self._camera.matrix, {"saturated": reading.saturated}
+                    )
+                    encoded = encode_frame(job.key(k), frame, reading, meta, layers)
+                with watch("write"):
+                    shard.add(encoded)
+                told({"frame": k})
+            with watch("commit"):
+                return shard.commit(record, fingerprint=self._fingerprint).size
+
+    def _record(self, job: ClipJob, stage: Stage, state: ThermalState, flight: Trajectory) -> ClipRecord:
+        season, knobs = state.season, self._recipe.sensor
+        low, high = CountScale.of(knobs, self._camera.band_um).ends
+        towards_sun = sun_direction(season, np.array([state.hour]))[0]
+        return ClipRecord(
+            job=job,
+            latitude_deg=season.latitude_deg,
+            month=season.month,
+            day=season.day,
+            hour=state.hour,
+            sun_elevation_deg=float(np.degrees(np.arcsin(np.clip(towards_sun[2], -1.0, 1.0)))),
+            weather=asdict(state.weather),
+            width_px=self._camera.width_px,
+            height_px=self._camera.height_px,
+            K=tuple((float(a), float(b), float(c)) for a, b, c in self._camera.matrix),
+            band_um=self._camera.band_um,
+            sensor={
+                "low_radiance": low,
+                "high_radiance": high,
+                "low_K": knobs.scale_K[0],
+                "high_K": knobs.scale_K[1],
+                "linear_in": knobs.linear_in,
+                "counts": MAX_COUNT + 1,
+                "netd_mk": knobs.netd_mk,
+                "time_constant_ms": knobs.time_constant_ms,
+            },
+            speed_mps=flight.speed_mps,
+            spacing_m=self._recipe.flight.spacing_m,
+            clearance_m=flight.clearance_m,
+            rejected=flight.rejected,
+            extra={"world": dict(stage.world.counts), "air_K": state.atmosphere.air_K},
+        )
+
+
+def worker(setup: Mapping[str, Any]) -> Callable[[dict[str, Any], Told], dict[str, Any]]:
+    """Factory for `scenegen.foundation.pool.Pool`: a studio in a process of its own."""
+    import cv2
+
+    from scenegen_render import backend
+
+    cv2.setNumThreads(1)
+    backend.set_threads(1)
+    studio = Studio(Recipe.model_validate(setup["recipe"]), Path(setup["root"]), setup["fingerprint"])
+
+    def make(payload: dict[str, Any], told: Told) -> dict[str, Any]:
+        value = studio.make(ClipJob(**payload), told)
+        return {**value, "memory": memory_MiB()}
+
+    return make
+
+
+def memory_MiB() -> dict[str, int]:
+    """Resident memory of this process now and at its peak [MiB], where the system tells."""
+    try:
+        lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
+    except OSError:
+        return {}
+    fields = dict(line.split(":", 1) for line in lines if ":" in line)
+    return {name: int(fields[key].split()[0]) // 1024 for name, key in (("now", "VmRSS"), ("peak", "VmHWM"))}
