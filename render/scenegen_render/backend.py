@@ -90,7 +90,9 @@ def use_cuda() -> None:
         If the renderer was already started on the CPU.
     """
     if _start.cache_info().currsize and _Choice.variant != "cuda_ad_mono":
-        raise BackendError("the renderer already runs on the CPU; choose CUDA before the first frame of the process")
+        raise BackendError(
+            "the renderer already runs on the CPU; choose CUDA before the first frame of the process"
+        )
     _Choice.variant = "cuda_ad_mono"
 
 
@@ -202,7 +204,9 @@ def _wheel_files() -> dict[str, Path]:
 
 def _system_llvms() -> list[Path]:
     """LLVM libraries of the system that are new enough, newest first."""
-    roots = [Path(p) for p in ("/usr/lib", "/usr/lib64", "/usr/local/lib", "/lib", "/opt/homebrew/opt/llvm/lib")]
+    roots = [
+        Path(p) for p in ("/usr/lib", "/usr/lib64", "/usr/local/lib", "/lib", "/opt/homebrew/opt/llvm/lib")
+    ]
     roots += sorted(Path("/usr/lib").glob("*-linux-gnu")) + sorted(Path("/usr/lib").glob("llvm-*/lib"))
     found: dict[int, Path] = {}
     for path in (p for root in roots if root.is_dir() for p in sorted(root.glob("libLLVM*.so*"))):

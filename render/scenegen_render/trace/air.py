@@ -64,33 +64,29 @@ class Air:
             total = dr.fma(total, y, c)
         return dr.exp(total)
 
+    def transmission(self, range_m: Any) -> Any:
+        """Share of radiance that survives a path of that length."""
+        _, dr = backend.modules()
+        return sum(w * dr.exp(-k * range_m) for w, k in zip(self.weight, self.attenuation_per_m, strict=True))
+
     def through(self, radiance: Any, range_m: Any) -> Any:
         """Radiance after a path of that length."""
         _, dr = backend.modules()
-        tau = sum(w * dr.exp(-k * range_m) for w, k in zip(self.weight, self.attenuation_per_m, strict=True))
-        return dr.fma(tau, radiance - self.air_radiance, self.air_radiance)
+        return dr.fma(self.transmission(range_m), radiance - self.air_radiance, self.air_radiance)
 
-    def sky_towards(self, direction: Any, active: Any) -> Any:
-        """Radiance of the sky; the atmosphere between here and space is part of it.
-
-        Parameters
-        ----------
-        direction : mitsuba.Vector3f
-            Unit vectors, ENU.
-        active : mitsuba.Bool
-        """
+    def sky_towards(self, direction: Any) -> Any:
+        """Radiance of the sky in unit directions (ENU); all the air between here and space is part of it."""
         mi, dr = backend.modules()
         x = dr.sqrt(dr.maximum(direction.z, 0.0)) * (_SKY_NODES - 1)
         node = dr.minimum(mi.UInt(x), _SKY_NODES - 2)
-        clear, overcast, clear_step, overcast_step = dr.gather(mi.Vector4f, self.sky, node, active)
+        clear, overcast, clear_step, overcast_step = dr.gather(mi.Vector4f, self.sky, node)
         step = x - mi.Float(node)
         clear, overcast = dr.fma(step, clear_step, clear), dr.fma(step, overcast_step, overcast)
         cover = dr.if_stmt(
             args=(direction,),
-            cond=active & self.patchy,
-            true_fn=lambda d: self._cover(d),
+            cond=self.patchy & (direction.z > 0.0),
+            true_fn=self._cover,
             false_fn=lambda d: mi.Float(self.cloud_fraction),
-            arg_labels=("direction",),
             label="clouds",
         )
         radiance = dr.fma(cover, overcast - clear, clear)

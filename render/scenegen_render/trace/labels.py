@@ -11,7 +11,6 @@ from scenegen_render import backend
 from scenegen_render.camera import Camera
 from scenegen_render.trace.lit import Lit
 from scenegen_render.trace.pose import DevicePose, Pose, device_pose
-from scenegen_render.trace.surface import Hit
 
 _OCCLUSION_TOLERANCE = 1e-3
 _IN_FRONT = 1e-6
@@ -33,11 +32,11 @@ class Moved:
     covisible: Any
 
 
-def triangle(lit: Lit, hit: Hit) -> tuple[Any, Any, Any]:
+def triangle(lit: Lit, face: Any, valid: Any) -> tuple[Any, Any, Any]:
     """First corner and the two edges of the triangles that were hit, float64, from the float32 vertices."""
     mi, dr = backend.modules()
-    corners = [dr.gather(mi.UInt, lit.loaded.faces, hit.face * 3 + k, hit.valid) for k in range(3)]
-    a, b, c = (mi.Vector3d(dr.gather(mi.Vector3f, lit.loaded.vertices, k, hit.valid)) for k in corners)
+    corners = [dr.gather(mi.UInt, lit.loaded.faces, face * 3 + k, valid) for k in range(3)]
+    a, b, c = (mi.Vector3d(dr.gather(mi.Vector3f, lit.loaded.vertices, k, valid)) for k in corners)
     return a, b - a, c - a
 
 
@@ -98,20 +97,20 @@ def moved(
     return Moved(flow, inside & ~hidden)
 
 
-def camera_normal(pose: Pose, direction: Any, normal: Any, valid: Any) -> Any:
+def camera_normal(pose: Pose, plane: Any, normal: Any, valid: Any) -> Any:
     """Unit normal facing the camera, in the camera frame; zero for sky.
 
     Parameters
     ----------
-    direction : mitsuba.Vector3f
-        Rays in the world frame.
+    plane : mitsuba.Vector2f
+        Camera-frame direction of each pixel centre at z = 1.
     normal : mitsuba.Vector3d
         Any multiple of the face normal, world frame.
     """
     mi, dr = backend.modules()
-    facing = dr.normalize(mi.Vector3f(normal))
-    facing = dr.mulsign(facing, -dr.dot(facing, direction))
+    n = dr.normalize(mi.Vector3f(normal))
     camera_from_world = np.eye(4)
     camera_from_world[:3, :3] = pose[:3, :3].T
-    turned = device_pose(camera_from_world).turn(facing.x, facing.y, facing.z)
-    return dr.select(valid, turned, mi.Vector3f(0.0))
+    n = device_pose(camera_from_world).turn(n.x, n.y, n.z)
+    away = dr.fma(n.x, plane.x, dr.fma(n.y, plane.y, n.z))
+    return dr.select(valid, dr.mulsign(n, -away), mi.Vector3f(0.0))

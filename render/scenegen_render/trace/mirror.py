@@ -1,57 +1,59 @@
-"""Glass, water and bare metal: one mirrored ray each, never a random one."""
+"""Glass, water and bare metal: a mirrored ray, never a random one."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from scenegen_render import backend
+from scenegen_render.trace import surface
 from scenegen_render.trace.lit import Lit
-from scenegen_render.trace.surface import Hit, Skin, cast, diffuse_radiance, skin
+from scenegen_render.trace.pose import DevicePose
 
 _LIFT = 2e-3
 """Start of the mirrored ray above the surface [m]; far more than float32 rounding at city distances."""
 
 
-def with_mirror(lit: Lit, hit: Hit, on: Skin, temperature_K: Any, towards: Any, radiance: Any) -> Any:
-    """Replace the radiance of mirror-like surfaces by ``(1 - rho) B(T) + rho L_in``.
+def reflectance(lit: Lit, hit: surface.Hit, on: surface.Skin, cosine: Any) -> Any:
+    """Mirror reflectance: Fresnel's for smooth dielectrics, a constant for bare metals, zero for all else."""
+    mi, dr = backend.modules()
 
-    L_in is the sky, or what the mirrored ray meets (its emission and baked reflection, without texture, which
-    averages out), after the air of that leg.
+    def of_mirror(what: Any, cosine: Any) -> Any:
+        n, k, constant, _ = dr.gather(mi.Vector4f, lit.mirror, what & 0xFFFF)
+        fresnel = mi.fresnel_conductor(cosine, mi.Complex2f(n, k))
+        return dr.select(n > 0.0, fresnel, constant)
+
+    return dr.if_stmt(
+        args=(on.what, cosine),
+        cond=hit.valid & (on.mirror > 0.0),
+        true_fn=of_mirror,
+        false_fn=lambda what, cosine: mi.Float(0.0),
+        label="fresnel",
+    )
+
+
+def incoming(lit: Lit, pose: DevicePose, towards: Any, face: Any, depth: Any) -> Any:
+    """Radiance a mirror receives from its mirror direction, L_in.
+
+    It is the sky, or what the mirrored ray meets (its emission and baked reflection, without texture, which averages
+    out), after the air of that leg.
 
     Parameters
     ----------
     towards : mitsuba.Vector3f
-        Unit direction of the incoming ray (from the camera).
-    radiance : mitsuba.Float
-        Diffuse radiance, kept where the surface is not a mirror.
+        Direction of the camera ray that met the mirror.
+    face : mitsuba.UInt
+        The mirror's face.
+    depth : mitsuba.Float
+        Distance to it in units of `towards`.
     """
     _, dr = backend.modules()
-    return dr.if_stmt(
-        args=(radiance, hit.point, on.normal, on.what, temperature_K, towards),
-        cond=hit.valid & (on.mirror > 0.0),
-        true_fn=lambda _, point, normal, what, kelvin, d: _mirrored(lit, point, normal, what, kelvin, d),
-        false_fn=lambda radiance, *_: radiance,
-        arg_labels=("radiance", "point", "normal", "what", "temperature", "towards"),
-        label="mirror",
-    )
-
-
-def _mirrored(lit: Lit, point: Any, normal: Any, what: Any, temperature_K: Any, towards: Any) -> Any:
-    mi, dr = backend.modules()
-    facing = -dr.dot(normal, towards)
+    normal = surface.face_normal(lit, face)
+    unit = dr.normalize(towards)
+    facing = -dr.dot(normal, unit)
     normal = dr.mulsign(normal, facing)
-    cosine = dr.clip(dr.abs(facing), 1e-4, 1.0)
-    outgoing = dr.fma(normal, 2.0 * cosine, towards)
-    incoming = _incoming(lit, dr.fma(normal, _LIFT, point), outgoing)
-    n, k, constant, _ = dr.gather(mi.Vector4f, lit.mirror, what & 0xFFFF)
-    rho = dr.select(n > 0.0, mi.fresnel_conductor(cosine, mi.Complex2f(n, k)), constant)
-    return dr.lerp(lit.air.blackbody(temperature_K), incoming, rho)
-
-
-def _incoming(lit: Lit, origin: Any, direction: Any) -> Any:
-    """Radiance arriving at a mirror along unit directions."""
-    _, dr = backend.modules()
-    met = cast(lit, origin, direction, coherent=False)
-    there = skin(lit, met)
-    surface = lit.air.through(diffuse_radiance(lit, there, there.temperature_K), met.depth)
-    return dr.select(met.valid, surface, lit.air.sky_towards(direction, ~met.valid))
+    outgoing = dr.fma(normal, 2.0 * dr.abs(facing), unit)
+    start = dr.fma(normal, _LIFT, dr.fma(towards, depth, pose.translation))
+    met = surface.cast(lit, start, outgoing, coherent=True)
+    there = surface.skin(lit, met)
+    leaving = surface.radiance(lit, there, there.temperature_K, 0.0)
+    return dr.select(met.valid, lit.air.through(leaving, met.depth), lit.air.sky_towards(outgoing))

@@ -114,11 +114,34 @@ def textured_K(lit: Lit, hit: Hit, on: Skin, footprint_m: Any) -> Any:
     return dr.fma(total, on.texture_K * _NORM, on.temperature_K)
 
 
-def diffuse_radiance(lit: Lit, on: Skin, temperature_K: Any) -> Any:
-    """Emission plus reflected baked irradiance: ``eps B(T) + (1 - eps) E / pi``."""
+def radiance(lit: Lit, on: Skin, temperature_K: Any, mirror_reflectance: Any) -> Any:
+    """Radiance that leaves a surface, but for its mirror image.
+
+    ``eps B(T) + (1 - eps) E / pi`` where it is rough, ``(1 - rho) B(T)`` where it is a mirror (rho > 0).
+    """
+    mi, dr = backend.modules()
+    mirrors = mi.Float(mirror_reflectance) > 0.0
+    emissivity = dr.select(mirrors, 1.0 - mirror_reflectance, on.emissivity)
+    reflected = dr.select(mirrors, 0.0, on.irradiance * (1.0 - on.emissivity) * (1.0 / math.pi))
+    return dr.fma(emissivity, lit.air.blackbody(temperature_K), reflected)
+
+
+def cosine(on: Skin, unit: Any) -> Any:
+    """Cosine between a unit ray direction and the surface normal, either side; not below 0.01."""
     _, dr = backend.modules()
-    reflected = on.irradiance * (1.0 / math.pi)
-    return dr.fma(on.emissivity, lit.air.blackbody(temperature_K) - reflected, reflected)
+    return dr.maximum(dr.abs(dr.dot(on.normal, unit)), 0.01)
+
+
+def what(lit: Lit, face: Any, valid: Any) -> Any:
+    """``surface | semantic << 16`` of faces; 0 where invalid."""
+    mi, dr = backend.modules()
+    return dr.reinterpret_array(mi.UInt, dr.gather(mi.Float, lit.face, face * 8 + 3, valid))
+
+
+def face_normal(lit: Lit, face: Any) -> Any:
+    """Outward normal of faces."""
+    mi, dr = backend.modules()
+    return unpack_normal(dr.gather(mi.UInt, lit.loaded.face_normal, face))
 
 
 def unpack_normal(packed: Any) -> Any:

@@ -13,9 +13,10 @@ from scenegen_render.camera import Camera
 from scenegen_render.frame import Frame
 from scenegen_render.knobs import RenderKnobs
 from scenegen_render.scene import LoadedWorld
-from scenegen_render.trace import labels, mirror, pixels, surface
+from scenegen_render.trace import labels, pixels, surface
 from scenegen_render.trace.lit import Lit, light
-from scenegen_render.trace.pose import DevicePose, Pose, device_pose, relative
+from scenegen_render.trace.pose import Pose, device_pose, relative
+from scenegen_render.trace.radiance import Sampler, Samples
 
 
 class Tracer:
@@ -35,9 +36,7 @@ class Tracer:
         self.camera = camera
         self.knobs = knobs
         centre = np.array([[0.5, 0.5]])
-        self._samples = pixels.on_device(
-            pixels.image_plane(camera, pixels.subsample_pattern(knobs.sub_samples))
-        )
+        self._sampler = Sampler(camera, knobs.sub_samples)
         self._centres = pixels.on_device(pixels.image_plane(camera, centre))
 
     def light(
@@ -69,44 +68,30 @@ class Tracer:
             if previous_pose is None:
                 raise ValueError("backward flow needs the previous pose")
             others.append(previous_pose)
-        layers = self._labels(lit, pose, towards, others)
-        layers["radiance"] = self._radiance(lit, towards)
-        dr.eval(layers)
-        layers["radiance"] = dr.block_sum(layers["radiance"], self.knobs.sub_samples)
+        samples = self._sampler.cast(lit, towards)
+        dr.eval(samples)
+        layers = self._labels(lit, pose, samples, others)
+        radiance = self._sampler.merge(lit, towards, samples)
+        dr.eval(layers, radiance)
+        layers["radiance"] = self._sampler.pixels(radiance)
         return self._frame({name: value.numpy() for name, value in layers.items()})
 
-    def _radiance(self, lit: Lit, pose: DevicePose) -> Any:
-        """Share of every sub-sample in its pixel's radiance."""
+    def _labels(self, lit: Lit, pose: Pose, samples: Samples, others: list[Pose]) -> dict[str, Any]:
+        """Layers of the ray through each pixel centre, which is the first sub-sample."""
         mi, dr = backend.modules()
-        direction = pose.turn(self._samples.x, self._samples.y, mi.Float(1.0))
-        hit = surface.cast(lit, pose.translation, direction, coherent=True)
-        on = surface.skin(lit, hit)
-        length = dr.norm(direction)
-        unit = direction / length
-        temperature = surface.textured_K(lit, hit, on, self._footprint(hit, on, unit))
-        leaving = surface.diffuse_radiance(lit, on, temperature)
-        leaving = mirror.with_mirror(lit, hit, on, temperature, unit, leaving)
-        arriving = lit.air.through(leaving, hit.depth * length)
-        seen = dr.select(hit.valid, arriving, lit.air.sky_towards(unit, ~hit.valid))
-        return seen * (1.0 / self.knobs.sub_samples)
-
-    def _labels(self, lit: Lit, pose: Pose, towards: DevicePose, others: list[Pose]) -> dict[str, Any]:
-        """Layers of the ray through each pixel centre."""
-        mi, dr = backend.modules()
-        direction = towards.turn(self._centres.x, self._centres.y, mi.Float(1.0))
-        hit = surface.cast(lit, towards.translation, direction, coherent=True)
-        on = surface.skin(lit, hit)
-        corner, along, up = labels.triangle(lit, hit)
+        centre = dr.arange(mi.UInt, dr.width(self._centres)) * self._sampler.count
+        valid = ~dr.isinf(dr.gather(mi.Float, samples.depth, centre))
+        face = dr.gather(mi.UInt, samples.face, centre)
+        what = surface.what(lit, face, valid)
+        corner, along, up = labels.triangle(lit, face, valid)
         normal = dr.cross(along, up)
         x, y = mi.Float64(self._centres.x), mi.Float64(self._centres.y)
         depth = mi.Float(labels.planar_depth(device_pose(pose, double=True), x, y, corner, normal))
-        temperature = surface.textured_K(lit, hit, on, self._footprint(hit, on, dr.normalize(direction)))
         layers = {
-            "depth": dr.select(hit.valid, depth, dr.inf),
-            "temperature": dr.select(hit.valid, temperature, 0.0),
-            "what": dr.select(hit.valid, on.what >> 16, 0)
-            | dr.gather(mi.UInt, lit.material, on.what & 0xFFFF, hit.valid) << 16,
-            "instance": dr.gather(mi.UInt, lit.loaded.face_object, hit.face, hit.valid),
+            "depth": dr.select(valid, depth, dr.inf),
+            "temperature": dr.gather(mi.Float, samples.temperature_K, centre),
+            "what": what >> 16 | dr.gather(mi.UInt, lit.material, what & 0xFFFF, valid) << 16,
+            "instance": dr.gather(mi.UInt, lit.loaded.face_object, face, valid),
         }
         for name, other in zip(("flow", "flow_back"), others, strict=False):
             moved = labels.moved(
@@ -114,7 +99,7 @@ class Tracer:
                 self.camera,
                 self._centres,
                 depth,
-                hit.valid,
+                valid,
                 device_pose(relative(other, pose)),
                 device_pose(other),
             )
@@ -124,15 +109,9 @@ class Tracer:
                 name + "_covisible": moved.covisible,
             }
         if self.knobs.normals:
-            facing = labels.camera_normal(pose, direction, normal, hit.valid)
+            facing = labels.camera_normal(pose, self._centres, normal, valid)
             layers |= {"normal_x": facing.x, "normal_y": facing.y, "normal_z": facing.z}
         return layers
-
-    def _footprint(self, hit: surface.Hit, on: surface.Skin, unit: Any) -> Any:
-        """Longest extent of a pixel on the surface [m]."""
-        _, dr = backend.modules()
-        slant = dr.maximum(dr.abs(dr.dot(on.normal, unit)), 0.02)
-        return hit.depth * (1.0 / self.camera.focal_px) / slant
 
     def _frame(self, layers: dict[str, np.ndarray[Any, Any]]) -> Frame:
         shape = (self.camera.height_px, self.camera.width_px)
