@@ -10,8 +10,8 @@ from jaxtyping import Float32, Float64
 from scenegen.radiometry.sky import air_mass
 
 _GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
-_REFERENCE_DEPTH, _REFERENCE_POWER = 0.2, 0.788
-"""Optical depth and air-mass power of a middling clear sky in the long-wave window."""
+_REFERENCE_DEPTH, _REFERENCE_POWER = 0.12, 0.788
+"""Optical depth and air-mass power of a clear sky between dry and humid, where the error changes its sign."""
 _FINE = 512
 
 

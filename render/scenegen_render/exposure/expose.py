@@ -37,7 +37,7 @@ def expose(
     """
     knobs = knobs or ExposureKnobs()
     world = loaded.world
-    rays = SiteRays.of(world.sites)
+    rays = SiteRays.of(world)
     steps = SunSteps.of(season, knobs.sun_step_min)
     beam = sun_beam(loaded, rays, steps)
     turn = rng.random(len(world.sites.area), dtype=np.float32)

@@ -6,14 +6,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jaxtyping import Int64
+from jaxtyping import Float32, Int64
 
-from scenegen.world import Sites
+from scenegen.world import World
 from scenegen_render import backend
 from scenegen_render.exposure.order import spatial_order
 
 _LIFT_M = 2e-3
 """Origins are lifted along the normal, well above the rounding of float32 coordinates at 1 km (0.06 mm)."""
+_INSET_M = 0.02
+"""Origins on the border of a facet move this far inwards: a site on the line where ground meets wall would otherwise
+start inside the wall's plane and look through it."""
+_LUMP_M = 0.05
+"""A larger standoff marks a lumped site (crown, car), which has no border."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,12 +44,13 @@ class SiteRays:
     standoff: Any
 
     @staticmethod
-    def of(sites: Sites) -> SiteRays:
+    def of(world: World) -> SiteRays:
         """Sort the sites and put their ray origins on the device."""
         mi, _ = backend.modules()
+        sites = world.sites
         order = spatial_order(sites.position)
         normal = sites.normal[order]
-        origin = sites.position[order] + np.float32(_LIFT_M) * normal
+        origin = sites.position[order] + _inset(world)[order] + np.float32(_LIFT_M) * normal
         return SiteRays(
             order=order,
             site=mi.UInt(order.astype(np.uint32)),
@@ -65,3 +71,20 @@ class SiteRays:
         mi, dr = backend.modules()
         origin = dr.gather(mi.Point3f, self.origin, place, active)
         return mi.Ray3f(origin + direction * dr.gather(mi.Float, self.standoff, place, active), direction)
+
+
+def _inset(world: World) -> Float32[np.ndarray, "sites 3"]:
+    """Shift of each ray origin along its facet towards the middle of the faces around it [m]; zero inside a facet."""
+    sites, vertices, faces = world.sites, world.mesh.vertices, world.mesh.faces
+    middle = (vertices[faces[:, 0]] + vertices[faces[:, 1]] + vertices[faces[:, 2]]) / np.float32(3.0)
+    corner = world.corner_site.reshape(-1)
+    count = np.maximum(np.bincount(corner, minlength=len(sites.area)), 1)
+    shift = np.empty((len(sites.area), 3))
+    for axis in range(3):
+        total = np.bincount(corner, weights=np.repeat(middle[:, axis], 3), minlength=len(sites.area))
+        shift[:, axis] = total / count - sites.position[:, axis]
+    shift -= np.einsum("sk,sk->s", shift, sites.normal)[:, None] * sites.normal
+    length = np.linalg.norm(shift, axis=1)
+    ordinary = sites.standoff < _LUMP_M
+    scale = np.where(ordinary, np.minimum(_INSET_M, 0.1 * length) / np.maximum(length, 1e-9), 0.0)
+    return np.asarray(scale[:, None] * shift, np.float32)
