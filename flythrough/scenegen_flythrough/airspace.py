@@ -5,19 +5,18 @@ The coarse map only proposes. It may miss a twig and may call a free gap occupie
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
-from jaxtyping import Bool, Float64, Int64, UInt8, UInt32, UInt64
+from jaxtyping import Bool, Float32, Float64, Int64, UInt8, UInt64
 
 from scenegen.world import World
+from scenegen_flythrough.boxtree import parts
 from scenegen_flythrough.clearance import MeshProximity
+from scenegen_flythrough.surface_samples import inner_points
 
 _LAYER_M = 2.0  # 64 layers of 2 m: heights of 0 to 128 m above ground in one 64-bit word
 _GROUND_M = 0.5  # what reaches no higher above the ground is ground
 _MAX_CELLS = 1_500_000
 _SAMPLE_CELLS = 2.0  # step of the samples: walls may show gaps of a cell, too narrow to be taken for a way
-_SAMPLES_AT_ONCE = 200_000
 ROOM_CELLS = 10
 """Distances to the nearest obstacle are counted up to this many cells."""
 
@@ -94,17 +93,31 @@ class Airspace:
 
     def _occupied_layers(self, rows: int, columns: int) -> UInt64[np.ndarray, "rows columns"]:
         """One bit per layer of 2 m above ground, set where the mesh has a point."""
-        mesh = self.world.mesh
-        points = mesh.vertices.astype(np.float64)
-        points[:, 2] -= self.world.ground.at(points[:, :2])
+        mesh, ground = self.world.mesh, self.world.ground
+        points = np.array(mesh.vertices)
         occupied = np.zeros((rows, columns, 64), np.bool_)
-        for samples in (points, *_inner_points(points, mesh.faces, _SAMPLE_CELLS * self.cell_m)):
-            column, row = self._cell(samples[:, :2])
-            layer = np.floor(samples[:, 2] / _LAYER_M)
-            keep = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
-            keep &= (samples[:, 2] > _GROUND_M) & (layer < 64)
-            occupied[row[keep], column[keep], layer[keep].astype(np.int64)] = True
+        for part in parts(len(points)):
+            points[part, 2] -= ground.at(points[part, :2].astype(np.float64))
+            self._mark(occupied, points[part])
+        for samples in inner_points(points, mesh.faces, _SAMPLE_CELLS * self.cell_m, _GROUND_M):
+            self._mark(occupied, samples)
         return np.packbits(occupied, axis=2, bitorder="little").view("<u8")[:, :, 0].astype(np.uint64)
+
+    def _mark(
+        self, occupied: Bool[np.ndarray, "rows columns 64"], points: Float32[np.ndarray, "points 3"]
+    ) -> None:
+        """Set the cells of points (east, north, height above ground), if they stand above the ground."""
+        points = points[points[:, 2] > _GROUND_M]
+        column, row = self._cell(points[:, :2].astype(np.float64))
+        layer = (points[:, 2] / _LAYER_M).astype(np.int64)
+        keep = (
+            (column >= 0)
+            & (column < occupied.shape[1])
+            & (row >= 0)
+            & (row < occupied.shape[0])
+            & (layer < 64)
+        )
+        occupied[row[keep], column[keep], layer[keep]] = True
 
 
 def _grown(blocked: Bool[np.ndarray, "rows columns"], *, square: bool) -> Bool[np.ndarray, "rows columns"]:
@@ -116,63 +129,3 @@ def _grown(blocked: Bool[np.ndarray, "rows columns"], *, square: bool) -> Bool[n
     out[:, 1:] |= base[:, :-1]
     out[:, :-1] |= base[:, 1:]
     return out
-
-
-def _inner_points(
-    points: Float64[np.ndarray, "vertices 3"], faces: UInt32[np.ndarray, "faces 3"], step_m: float
-) -> Iterator[Float64[np.ndarray, "samples 3"]]:
-    """Points inside triangles longer than a step, about a step apart; triangles on the ground are left out.
-
-    Each triangle is covered by rows parallel to its longest side, so that a tall pane costs its area, not its height
-    squared.
-    """
-    standing = faces[_standing_large(points, faces, step_m)]
-    sides = np.stack(
-        [_length2(points[standing[:, k - 2]] - points[standing[:, k]]) for k in range(3)], axis=1
-    )
-    base = np.argmax(sides, axis=1)
-    longest = np.sqrt(np.take_along_axis(sides, base[:, None], axis=1)[:, 0])
-    a, b, c = (points[np.take_along_axis(standing, (base[:, None] + k) % 3, axis=1)[:, 0]] for k in range(3))
-    width = np.sqrt(_length2(np.cross(b - a, c - a))) / longest
-    columns = np.minimum(np.ceil(longest / step_m), 1024.0).astype(np.int64) + 1
-    rows = np.minimum(np.ceil(width / step_m), 1024.0).astype(np.int64) + 1
-    counts = columns * rows
-    ends = np.cumsum(counts)
-    starts = ends - counts
-    for first, last in _runs(ends, _SAMPLES_AT_ONCE):
-        pick = np.repeat(np.arange(first, last), counts[first:last])
-        index = np.arange(len(pick)) - np.repeat(starts[first:last] - starts[first], counts[first:last])
-        row, column = np.divmod(index, columns[pick])
-        v = (row / (rows[pick] - 1))[:, None]
-        u = (column / (columns[pick] - 1))[:, None] * (1.0 - v)
-        yield a[pick] + u * (b - a)[pick] + v * (c - a)[pick]
-
-
-def _standing_large(
-    points: Float64[np.ndarray, "vertices 3"], faces: UInt32[np.ndarray, "faces 3"], step_m: float
-) -> Int64[np.ndarray, "large"]:
-    """Faces that rise above the ground and are longer than a step along some axis."""
-    risen = np.zeros(len(faces), np.bool_)
-    long = np.zeros(len(faces), np.bool_)
-    for axis in range(3):
-        value = points[:, axis].astype(np.float32)
-        a, b, c = (value[faces[:, k]] for k in range(3))
-        highest = np.maximum(np.maximum(a, b), c)
-        long |= highest - np.minimum(np.minimum(a, b), c) > step_m
-        if axis == 2:
-            risen = highest > _GROUND_M
-    return np.flatnonzero(long & risen)
-
-
-def _runs(ends: Int64[np.ndarray, "items"], size: int) -> Iterator[tuple[int, int]]:
-    """Consecutive ranges of items whose counts (cumulative: `ends`) add up to about `size`."""
-    first = 0
-    while first < len(ends):
-        done = int(ends[first - 1]) if first else 0
-        last = max(int(np.searchsorted(ends, done + size)), first + 1)
-        yield first, last
-        first = last
-
-
-def _length2(v: Float64[np.ndarray, "n 3"]) -> Float64[np.ndarray, "n"]:
-    return np.asarray((v * v).sum(axis=1))

@@ -10,9 +10,10 @@ from jaxtyping import Float64
 from scenegen_flythrough.steering import GRAVITY_MPS2
 
 _DRAG_PER_S = 0.25
-"""Linear rotor drag [1/s]: 10 m/s costs 2.5 m/s^2, a nose-down tilt of 14 deg. Small quadrotors: 0.2-0.5 1/s (Faessler
-et al., Differential flatness of quadrotor dynamics subject to rotor drag, IEEE RA-L 3(2), 2018)."""
+"""Linear rotor drag [1/s]: at 10 m/s it asks for a nose-down tilt of 14 deg. The model is that of Faessler, Franchi
+and Scaramuzza, doi 10.1109/LRA.2017.2776353; the value is our choice for a small quadrotor."""
 _YAW_LAG_S = 0.25
+"""Time constant with which the nose follows the heading [s]; our choice."""
 
 
 def camera_poses(

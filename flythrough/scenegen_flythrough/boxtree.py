@@ -7,6 +7,8 @@ needs no cell size, stores every triangle once however long it is, and finds the
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 from jaxtyping import Float32, Float64, Int64, UInt64
 
@@ -31,11 +33,13 @@ class BoxTree:
     """
 
     def __init__(self, mesh: TriangleMesh) -> None:
-        corners = mesh.vertices[mesh.faces]
-        low, high = _span_of(corners)
-        self.face: Int64[np.ndarray, "triangles"] = np.argsort(_curve(low, high), kind="stable")
-        self.corners: Float32[np.ndarray, "triangles 3 3"] = corners[self.face]
-        low, high = low[self.face], high[self.face]
+        count = len(mesh.faces)
+        self.face: Int64[np.ndarray, "triangles"] = np.argsort(_keys(mesh), kind="stable")
+        self.corners: Float32[np.ndarray, "triangles 3 3"] = np.empty((count, 3, 3), np.float32)
+        low, high = np.empty((count, 3), np.float32), np.empty((count, 3), np.float32)
+        for part in parts(count):
+            self.corners[part] = mesh.vertices[mesh.faces[self.face[part]]]
+            low[part], high[part] = _bounds(self.corners[part])
         self.levels = [(low, high)]
         while len(low) > _TOP:
             runs = np.arange(0, len(low), FAN_OUT)
@@ -79,33 +83,40 @@ def _square(v: Float64[np.ndarray, "pairs 3"]) -> Float64[np.ndarray, "pairs"]:
     return np.asarray(v[:, 0] ** 2 + v[:, 1] ** 2 + v[:, 2] ** 2)
 
 
-def _span_of(
+def _bounds(
     corners: Float32[np.ndarray, "triangles 3 3"],
 ) -> tuple[Float32[np.ndarray, "triangles 3"], Float32[np.ndarray, "triangles 3"]]:
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     return np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
 
 
-def _curve(
-    low: Float32[np.ndarray, "triangles 3"], high: Float32[np.ndarray, "triangles 3"]
-) -> UInt64[np.ndarray, "triangles"]:
+def parts(count: int) -> Iterator[slice]:
+    """Ranges that keep a step's arrays in the cache: fresh pages cost more than the arithmetic."""
+    return (slice(first, first + 65_536) for first in range(0, count, 65_536))
+
+
+def _keys(mesh: TriangleMesh) -> UInt64[np.ndarray, "triangles"]:
     """Sort key: size class first, then Morton order of the box centres.
 
-    One long wall among window panes would blow up the box of every node above it; triangles of one size class share
-    their nodes with their like.
+    One long wall among window panes would blow up the box of every node above it; triangles of one size class (a
+    factor of eight) share their nodes with their like.
     """
-    if len(low) == 0:
-        return np.zeros(0, np.uint64)
-    # Column by column: numpy reduces an axis of length three an order of magnitude more slowly.
-    size = np.maximum(np.maximum(high[:, 0] - low[:, 0], high[:, 1] - low[:, 1]), high[:, 2] - low[:, 2])
-    centres = [low[:, axis] + high[:, axis] for axis in range(3)]
-    extent = max(*(float(c.max() - c.min()) for c in centres), 1e-6)
-    steps = np.floor(np.log2(np.maximum(size, 1e-6)) / 3.0)
-    key = (steps - steps.min()).astype(np.uint64) << np.uint64(3 * _BITS)
-    for axis, centre in enumerate(centres):
-        grid = ((centre - centre.min()) * ((2**_BITS - 1) / extent)).astype(np.uint64)
-        key |= _spread(np.minimum(grid, np.uint64(2**_BITS - 1))) << np.uint64(axis)
-    return np.asarray(key)
+    keys = np.empty(len(mesh.faces), np.uint64)
+    if len(keys) == 0:
+        return keys
+    origin = mesh.vertices.min(axis=0)
+    scale = (2**_BITS - 1) / max(float((mesh.vertices.max(axis=0) - origin).max()), 1e-6)
+    for part in parts(len(keys)):
+        low, high = _bounds(mesh.vertices[mesh.faces[part]])
+        # Column by column: numpy reduces an axis of length three an order of magnitude more slowly.
+        size = np.maximum(np.maximum(high[:, 0] - low[:, 0], high[:, 1] - low[:, 1]), high[:, 2] - low[:, 2])
+        key = (np.log2(np.clip(size, 1e-6, 1e6)) / 3.0 + 8.0).astype(np.uint64) << np.uint64(3 * _BITS)
+        for axis in range(3):
+            centre = 0.5 * (low[:, axis].astype(np.float64) + high[:, axis])
+            grid = ((centre - origin[axis]) * scale).astype(np.uint64)
+            key |= _spread(np.minimum(grid, np.uint64(2**_BITS - 1))) << np.uint64(axis)
+        keys[part] = key
+    return keys
 
 
 def _spread(x: UInt64[np.ndarray, "n"]) -> UInt64[np.ndarray, "n"]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Bool, Float64
@@ -19,6 +20,15 @@ _BATCH = 32  # paths tried together
 _PROVEN_TOGETHER = 4
 _BATCHES_PER_INTENT = 4
 _VIEW_M = 40.0  # how much of the world must still lie ahead of every pose
+
+
+@dataclass
+class _Rejections:
+    """Why paths were turned down, for the message of a flight that is given up."""
+
+    outside: int = 0
+    blocked: int = 0
+    enclosed: int = 0
 
 
 def fly(
@@ -55,20 +65,20 @@ def fly(
         raise InputError(f"a clip needs at least one frame, not {frames}; raise the number of frames")
     if airspace.world is not world:
         raise AssertionError("the airspace belongs to another world")
-    rejected, reasons = 0, np.zeros(3, np.int64)
+    rejected, why = 0, _Rejections()
     while rejected < knobs.max_draws:
         intent_rng, *batch_rngs = rng.spawn(1 + _BATCHES_PER_INTENT)
         intent = _draw_intent(knobs, intent_rng)
         room = airspace.room(intent.height_m, max(knobs.clearance_m, 0.1 * intent.height_m) + 1.0)
-        for batch_rng in batch_rngs:
+        for batch_rng in batch_rngs[: math.ceil((knobs.max_draws - rejected) / _BATCH)]:
             left = min(_BATCH, knobs.max_draws - rejected)
             paths = fly_batch(airspace, room, knobs, intent, (_BATCH, frames + 2), batch_rng)[:left]
-            index = _first_proven(airspace, knobs, paths, reasons)
+            index = _first_proven(airspace, knobs, paths, why)
             if index is not None:
                 return _trajectory(airspace, knobs, intent, paths[index], rejected + index)
             rejected += left
-            reasons[1] += left - len(paths)  # no free place to start from at this height
-    raise RejectedDrawError(_given_up(world, knobs, frames, rejected, reasons))
+            why.blocked += left - len(paths)  # no free place to start from at this height
+    raise RejectedDrawError(_given_up(world, knobs, frames, why))
 
 
 def _draw_intent(knobs: FlightKnobs, rng: np.random.Generator) -> Intent:
@@ -85,20 +95,20 @@ def _between(span: tuple[float, float], share: float) -> float:
 
 
 def _first_proven(
-    airspace: Airspace, knobs: FlightKnobs, paths: Float64[np.ndarray, "batch poses 3"], reasons: np.ndarray
+    airspace: Airspace, knobs: FlightKnobs, paths: Float64[np.ndarray, "batch poses 3"], why: _Rejections
 ) -> int | None:
     """Index of the first path that holds everything, as if they had been tried one after the other."""
     inside = _inside(airspace, knobs, paths)
-    reasons[0] += int((~inside).sum())
+    why.outside += int((~inside).sum())
     candidates = np.flatnonzero(inside)
     for first in range(0, len(candidates), _PROVEN_TOGETHER):
         group = candidates[first : first + _PROVEN_TOGETHER]
         free = _free(airspace, knobs, paths[group])
-        reasons[1] += int((~free).sum())
+        why.blocked += int((~free).sum())
         for index in group[free].tolist():
             if airspace.open_to_sky(paths[index, ::8], knobs.clearance_m).any():
                 return int(index)
-            reasons[2] += 1
+            why.enclosed += 1
     return None
 
 
@@ -147,11 +157,13 @@ def _trajectory(
     )
 
 
-def _given_up(world: World, knobs: FlightKnobs, frames: int, rejected: int, reasons: np.ndarray) -> str:
-    outside, blocked, enclosed = reasons.tolist()
+def _given_up(world: World, knobs: FlightKnobs, frames: int, why: _Rejections) -> str:
     length = math.ceil((frames + 1) * knobs.spacing_m)
+    reasons = (
+        f"{why.outside} left the flight box or the height range, {why.blocked} came closer than clearance_m "
+        f"{knobs.clearance_m:g}, {why.enclosed} had no open sky"
+    )
     return (
-        f"no free flight of {length} m in this {world.map} world after {rejected} draws ({outside} left the flight box "
-        f"or the height range, {blocked} came closer than clearance_m {knobs.clearance_m:g}, {enclosed} had no open "
-        "sky); ask for a shorter clip, less clearance, other heights or a slower speed"
+        f"no free flight of {length} m in this {world.map} world after {knobs.max_draws} draws ({reasons}); "
+        "ask for a shorter clip, less clearance, other heights or a slower speed"
     )

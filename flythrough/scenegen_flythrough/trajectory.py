@@ -21,7 +21,7 @@ class Trajectory:
     speed_mps : float
         Constant speed along the path.
     clearance_m : float
-        Smallest distance of the path to the mesh, proven at densely sampled points [m].
+        Smallest distance of the path, straight from pose to pose, to the mesh [m]; exact, not sampled.
     rejected : int
         Draws that were rejected before this one.
     """

@@ -168,6 +168,15 @@ def test_heights_and_headings_spread(city, city_air: Airspace) -> None:
     assert (np.ptp(starts, axis=0) > 150.0).all()
 
 
+def test_there_is_always_world_ahead(flights) -> None:
+    """No pose looks over the edge of the world into nothing."""
+    for world, _, trajectory in flights:
+        ahead = trajectory.world_from_camera[1:, :2, 2]
+        ahead = ahead / np.linalg.norm(ahead, axis=1, keepdims=True)
+        edge = np.abs(world.ground.origin_m).max()
+        assert np.abs(trajectory.world_from_camera[1:, :2, 3] + 30.0 * ahead).max() < edge
+
+
 def test_same_generator_same_bytes(city, city_air: Airspace) -> None:
     first = fly(city.world, FlightKnobs(), 20, stream(1, "x"), city_air)
     again = fly(city.world, FlightKnobs(), 20, stream(1, "x"), Airspace(city.world))
