@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -148,13 +149,13 @@ def run(job: Job, render: Mapping[str, str], told: Told) -> Outcome:
         scene_semantics=SCENE_SEMANTICS,
         render=render,
     )
+    check(job)
     _make_directory(job.root)
     with DirectoryLock(job.root):
         create_or_open(job.root, _yaml(job.asked), lock, allow_mixed=job.allow_mixed)
         clean(job.root)
         done = finished(job.root)
         missing = [clip for clip in job.clips if clip.name not in done]
-        _check_space(job, missing)
         with RunLog(job.root) as log:
             log.write(
                 "start",
@@ -268,10 +269,28 @@ def _make_directory(root: Path) -> None:
         raise InputError(f"--out {root}: cannot be made: {error.strerror}; choose another --out") from None
 
 
-def _check_space(job: Job, missing: Sequence[ClipJob]) -> None:
-    """Refuse before rendering what will not fit."""
-    need = job.bytes * len(missing) / max(len(job.clips), 1)
-    free = shutil.disk_usage(job.root).free
+def check(job: Job) -> None:
+    """Refuse what cannot end well before anything is started or written.
+
+    Raises
+    ------
+    InputError
+        If the output cannot be written.
+    NoSpaceError
+        If what is missing does not fit on the device.
+    """
+    try:
+        existing = next(p for p in (job.root.absolute(), *job.root.absolute().parents) if p.exists())
+        if not existing.is_dir():
+            raise InputError(f"--out {job.root}: {existing} is a file; name a directory")
+        if not os.access(existing, os.W_OK | os.X_OK):
+            raise InputError(f"--out {job.root}: {existing} cannot be written; choose another --out")
+        free = shutil.disk_usage(existing).free
+        done = finished(job.root) if job.root.is_dir() else set()
+    except (OSError, ValueError) as error:
+        raise InputError(f"--out {str(job.root)!r}: cannot be used: {error}") from None
+    missing = sum(clip.name not in done for clip in job.clips)
+    need = job.bytes * missing / len(job.clips)
     if need > free:
         raise NoSpaceError(
             f"{job.root}: about {need / 1e9:.1f} GB are needed and {free / 1e9:.1f} GB are free; "

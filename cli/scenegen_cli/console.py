@@ -1,0 +1,57 @@
+"""What people read: results on standard output, everything else on standard error."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+
+def say(text: str) -> None:
+    """Print a result."""
+    sys.stdout.write(f"{text}\n")
+    sys.stdout.flush()
+
+
+def note(text: str) -> None:
+    """Print something on the way."""
+    sys.stderr.write(f"{text}\n")
+    sys.stderr.flush()
+
+
+def complain(text: str) -> None:
+    """Print an error: one line."""
+    note(f"scenegen: {text}")
+
+
+def say_json(value: Any) -> None:
+    """Print a result for machines: one JSON document."""
+    say(json.dumps(value, indent=2, sort_keys=True, ensure_ascii=False))
+
+
+def table(rows: Iterable[Sequence[str]]) -> str:
+    """Left-aligned columns, two blanks apart."""
+    lines = [list(row) for row in rows]
+    widths = [max(len(line[k]) for line in lines) for k in range(len(lines[0]))] if lines else []
+    return "\n".join(
+        "  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in lines
+    )
+
+
+def size(count: float) -> str:
+    """Bytes for people."""
+    for unit in ("B", "kB", "MB", "GB"):
+        if count < 1000.0:
+            return f"{count:.0f} {unit}" if unit == "B" else f"{count:.1f} {unit}"
+        count /= 1000.0
+    return f"{count:.1f} TB"
+
+
+def span(seconds: float) -> str:
+    """Seconds as 12 s, 3:07 or 1:02:33."""
+    whole = max(round(seconds), 0)
+    if whole < 60:
+        return f"{whole} s"
+    hours, rest = divmod(whole, 3600)
+    return f"{hours}:{rest // 60:02d}:{rest % 60:02d}" if hours else f"{rest // 60}:{rest % 60:02d}"

@@ -1,0 +1,41 @@
+"""What the listing commands share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from scenegen_cli.console import say, say_json, table
+from scenegen_cli.parse import HelpShown, parse
+
+
+@dataclass(frozen=True)
+class Listing:
+    """Print a list."""
+
+    json: bool = False
+    """Report as JSON."""
+
+
+def show(
+    name: str,
+    arguments: Sequence[str],
+    rows: Callable[[], Sequence[Mapping[str, Any]]],
+    columns: Sequence[str],
+) -> int:
+    """Print rows as a table of some columns, or all of them as JSON; returns the exit code."""
+    try:
+        command = parse(Listing, name, arguments)
+    except HelpShown:
+        return 0
+    found = rows()
+    if command.json:
+        say_json([dict(row) for row in found])
+        return 0
+    say(table([columns, *([_text(row[column]) for column in columns] for row in found)]))
+    return 0
+
+
+def _text(value: Any) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)

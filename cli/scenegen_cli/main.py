@@ -1,0 +1,116 @@
+"""The `scenegen` command: find the subcommand, load only that, turn what goes wrong into one line and an exit code."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import signal
+import sys
+from collections.abc import Sequence
+from types import FrameType
+
+from scenegen_cli.console import complain, say
+
+COMMANDS = {
+    "demo": "make a few pairs in a minute and show where the pictures are",
+    "render": "make a dataset, resume one, or grow one",
+    "preview": "draw contact sheet and animation of a dataset",
+    "info": "what a dataset holds",
+    "status": "how far a dataset is while it is being made",
+    "verify": "check every byte, array and rule of a dataset",
+    "doctor": "check this machine and say what to do",
+    "maps": "list the kinds of worlds",
+    "materials": "list the materials",
+    "sensors": "list the cameras",
+}
+"""Subcommands; each is a module of this package with a function ``run(arguments) -> exit code``."""
+
+INTERRUPTED, TERMINATED = 130, 143
+
+
+class TerminatedError(BaseException):
+    """SIGTERM was received. Like KeyboardInterrupt, nothing but the front door catches it."""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Returns
+    -------
+    int
+        0 ok, 1 a check failed, 2 bad input, 3 finished with quarantined clips, 4 no space left, 130/143 interrupted.
+    """
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    if not words or words[0] in ("-h", "--help", "help"):
+        say(_help())
+        return 0 if words else 2
+    if words[0] == "--version":
+        from importlib.metadata import version
+
+        say(f"scenegen {version('thermal-scenegen')}")
+        return 0
+    signal.signal(signal.SIGTERM, _terminate)
+    try:
+        return _run(words)
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except TerminatedError:
+        return TERMINATED
+    except BrokenPipeError:
+        os.dup2(
+            os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno()
+        )  # the reader left, e.g. `scenegen ... | head`
+        return 0
+    except Exception as error:
+        return _explain(error)
+
+
+def _run(words: list[str]) -> int:
+    name, rest = words[0], words[1:]
+    if name not in COMMANDS:
+        from scenegen.foundation.errors import InputError, nearest
+
+        raise InputError(f"unknown command '{name}'{nearest(name, COMMANDS)}")
+    module = importlib.import_module(f"scenegen_cli.{name}")
+    code = module.run(rest)
+    assert isinstance(code, int)
+    return code
+
+
+def _explain(error: Exception) -> int:
+    """One line for a user; a bug's traceback goes to a file, which the line names."""
+    from scenegen.foundation.errors import ScenegenError
+
+    if isinstance(error, ScenegenError):
+        complain(" ".join(str(error).split()))
+        return error.exit_code
+    import tempfile
+    import traceback
+
+    with tempfile.NamedTemporaryFile(
+        "w", prefix="scenegen-", suffix=".txt", delete=False, encoding="utf-8"
+    ) as file:
+        file.write("".join(traceback.format_exception(error)))
+    complain(
+        f"a bug: {type(error).__name__}: {' '.join(str(error).split())[:200]}; the traceback is in {file.name}"
+    )
+    return 1
+
+
+def _terminate(_signal: int, _frame: FrameType | None) -> None:
+    raise TerminatedError
+
+
+def _help() -> str:
+    width = max(map(len, COMMANDS))
+    lines = "\n".join(f"  {name:<{width}}  {meaning}" for name, meaning in COMMANDS.items())
+    return (
+        "usage: scenegen COMMAND [options]\n\n"
+        "Paired thermal and depth datasets from procedural worlds.\n\n"
+        f"{lines}\n\n"
+        "'scenegen COMMAND --help' explains one; start with 'scenegen demo'."
+    )
+
+
+if __name__ == "__main__":
+    sys.exit(main())

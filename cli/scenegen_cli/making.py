@@ -1,0 +1,114 @@
+"""What `render` and `demo` share: make a dataset with progress, verify it, say what came of it."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from scenegen.foundation.errors import InputError
+from scenegen_cli.console import note, say, say_json, size
+from scenegen_cli.main import TerminatedError
+from scenegen_cli.progress import Meter
+from scenegen_datasets.probe import render_fingerprint
+from scenegen_datasets.run import Job, Outcome, check, run
+from scenegen_datasets.verify import VerifyReport, verify
+
+QUARANTINED = 3
+"""Exit code of a job that finished without some of its clips."""
+
+
+def processes(asked: int) -> int:
+    """Number of worker processes: as asked, or one per CPU this process may use.
+
+    Raises
+    ------
+    InputError
+        If it is not between 0 and 1024.
+    """
+    available = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    if asked == 0:
+        return available
+    if not 1 <= asked <= 1024:
+        raise InputError(f"--jobs {asked}: ask for 1 to 1024 processes; this machine has {available}")
+    return asked
+
+
+def make(job: Job, again: Sequence[str], *, check_after: bool, as_json: bool) -> int:
+    """Run a job and report.
+
+    Parameters
+    ----------
+    job : Job
+    again : sequence of str
+        The command line that resumes it.
+    check_after : bool
+        Verify the whole dataset at the end.
+    as_json : bool
+        Report as one JSON document.
+
+    Returns
+    -------
+    int
+        Exit code.
+    """
+    check(job)
+    if not as_json:
+        note(f"{job.root}: {plan_in_words(job)}")
+    try:
+        with Meter(quiet=as_json) as meter:
+            outcome = run(job, render_fingerprint(), meter.frames)
+            report = verify(job.root, job.processes, progress=meter.verified) if check_after else None
+    except (KeyboardInterrupt, TerminatedError):
+        note(f"interrupted; finished clips are kept. Continue with: {shlex.join(again)}")
+        raise
+    if as_json:
+        say_json(_facts(job, outcome, report))
+    else:
+        say(_words(outcome, report))
+        for clip, reason in outcome.quarantined:
+            note(f"put aside: {clip}: {reason}")
+    if report is not None and not report.ok:
+        note(f"verify found: {report.findings[0].file}: {report.findings[0].reason}")
+        return 1
+    return QUARANTINED if outcome.quarantined or outcome.info.missing else 0
+
+
+def plan_in_words(job: Job) -> str:
+    """One line: how much of what."""
+    clips = job.clips
+    worlds = len({(clip.map, clip.world) for clip in clips})
+    camera = job.recipe.camera
+    return (
+        f"{job.pairs:,} pairs of {camera.width_px}x{camera.height_px} in {len(clips):,} clips from {worlds:,} "
+        f"world{'s' if worlds > 1 else ''} ({', '.join(job.recipe.map)}), about {size(job.bytes)}, "
+        f"{job.processes} process{'es' if job.processes > 1 else ''}"
+    )
+
+
+def pictures(root: Path) -> tuple[Path, Path]:
+    """Where the pictures of a dataset are."""
+    from scenegen_datasets.pictures.preview import FLIGHT, SHEET
+
+    return root / SHEET, root / FLIGHT
+
+
+def _words(outcome: Outcome, report: VerifyReport | None) -> str:
+    info = outcome.info
+    splits = ", ".join(f"{count:,} {name}" for name, count in info.splits.items() if count)
+    checked = "" if report is None else ", verified" if report.ok else f", {len(report.findings)} findings"
+    return f"{info.name} {info.version}: {info.pairs:,} pairs ({splits}), {size(info.bytes)}{checked}"
+
+
+def _facts(job: Job, outcome: Outcome, report: VerifyReport | None) -> dict[str, Any]:
+    return {
+        **asdict(outcome.info),
+        "root": str(job.root),
+        "made": outcome.made,
+        "quarantined": dict(outcome.quarantined),
+        "verified": None if report is None else report.ok,
+        "findings": [] if report is None else [asdict(finding) for finding in report.findings],
+    }

@@ -1,0 +1,29 @@
+"""``scenegen materials``: the material table."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from scenegen_cli.listing import show
+
+COLUMNS = ("id", "name", "emissivity", "solar_absorptance", "thickness_m", "build", "source")
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run the subcommand; returns the exit code."""
+    return show("materials", arguments, _rows, COLUMNS)
+
+
+def _rows() -> list[dict[str, Any]]:
+    from scenegen.materials.table import materials
+
+    return [
+        {
+            key: None if isinstance(value, float) and not math.isfinite(value) else value
+            for key, value in row.items()
+        }
+        for row in (asdict(material) for material in materials().values())
+    ]

@@ -1,0 +1,87 @@
+"""How far a job is: a bar in a terminal, a plain line now and then elsewhere."""
+
+from __future__ import annotations
+
+import sys
+import time
+from types import TracebackType
+from typing import Any
+
+from scenegen_cli.console import note, span
+from scenegen_datasets.run import Progress
+
+PLAIN_EVERY_S = 15.0
+
+
+class Meter:
+    """Shows the progress of a job on standard error.
+
+    Parameters
+    ----------
+    quiet : bool
+        Show nothing at all.
+    """
+
+    def __init__(self, *, quiet: bool = False) -> None:
+        self._quiet = quiet
+        self._bar: Any = None
+        self._task: Any = None
+        self._began = self._shown = time.monotonic()
+        self._what = ""
+
+    def __enter__(self) -> Meter:
+        if not self._quiet and sys.stderr.isatty():
+            from rich.console import Console
+            from rich.progress import BarColumn, TaskProgressColumn, TextColumn
+            from rich.progress import Progress as RichProgress
+
+            columns = (
+                TextColumn("{task.description}"),
+                BarColumn(),
+                TaskProgressColumn(),
+                TextColumn("{task.fields[rate]}"),
+                TextColumn("{task.fields[what]}", style="dim"),
+            )
+            self._bar = RichProgress(*columns, console=Console(stderr=True), transient=True)
+            self._bar.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+
+    def frames(self, progress: Progress) -> None:
+        """Frames were rendered, or something happened."""
+        if progress.what:
+            self._what = progress.what
+        clips = f"clip {progress.clips_done}/{progress.clips}"
+        self._show("rendering", progress.frames_done, progress.frames, f"{clips}  {self._what}".rstrip())
+
+    def verified(self, done: int, total: int) -> None:
+        """Clips were verified."""
+        if self._bar is not None and done == 1:
+            self._bar.remove_task(self._task) if self._task is not None else None
+            self._task = None
+        self._show("verifying", done, total, f"clip {done}/{total}")
+
+    def _show(self, doing: str, done: int, total: int, what: str) -> None:
+        now = time.monotonic()
+        if self._quiet or total == 0:
+            return
+        rate = self._rate(done, total, now - self._began) if doing == "rendering" else ""
+        if self._bar is not None:
+            if self._task is None:
+                self._task = self._bar.add_task(doing, total=total, rate="", what="")
+            self._bar.update(self._task, completed=done, total=total, rate=rate, what=what)
+        elif now - self._shown >= PLAIN_EVERY_S:
+            self._shown = now
+            note(f"{doing}  {100 * done / total:3.0f} %  {rate}  {what}")
+
+    @staticmethod
+    def _rate(done: int, total: int, seconds: float) -> str:
+        """Rate over the whole run, worlds included, and what is left at that rate."""
+        if done == 0 or seconds <= 0.0:
+            return ""
+        return f"{done / seconds:.1f} frames/s  {span((total - done) * seconds / done)} left"

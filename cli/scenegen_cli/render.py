@@ -1,0 +1,123 @@
+"""``scenegen render``: make a dataset, resume one, or grow one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from scenegen.foundation.errors import InputError
+from scenegen.foundation.strict_yaml import read_mapping
+from scenegen_cli.console import say, say_json
+from scenegen_cli.making import make, plan_in_words, processes
+from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
+from scenegen_datasets.recipe import Recipe, resolve_recipe, settle_pairs
+from scenegen_datasets.resolve import Source, leaves, merge
+from scenegen_datasets.run import Job
+
+
+@dataclass(frozen=True)
+class Render:
+    """Make a dataset. Run again to resume it where it stopped; raise --pairs (with the same --out) to grow it."""
+
+    pairs: int = 0
+    """How many pairs; rounded up to whole clips. Must be given."""
+    out: Path | None = None
+    """Directory of the dataset; by default MAP-PAIRS here."""
+    recipe: Path | None = None
+    """YAML file of recipe keys; flags win over it."""
+    size: str | None = None
+    """Image size WIDTHxHEIGHT; keeps the camera's horizontal field of view."""
+    jobs: int = 0
+    """Worker processes; 0 is one per CPU."""
+    dry_run: bool = False
+    """Say what would be made, and stop."""
+    verify: bool = True
+    """Verify the whole dataset at the end."""
+    allow_mixed: bool = False
+    """Go on with a dataset that other software versions began."""
+    json: bool = False
+    """Report as JSON."""
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run the subcommand; returns the exit code."""
+    try:
+        own, flags = split_recipe_flags(arguments, [key for key, _, _ in leaves(Recipe)])
+        command = parse(Render, "render", own, _recipe_help())
+    except HelpShown:
+        return 0
+    asked, recipe = ask(command.recipe, command.size, flags)
+    if command.pairs == 0:
+        raise InputError("--pairs is missing or 0: say how many pairs to make, such as --pairs 512")
+    recipe, pairs = settle_pairs(recipe, command.pairs)
+    out = command.out or Path(f"{'-'.join(recipe.map)}-{command.pairs}")
+    job = Job(
+        recipe=recipe,
+        pairs=pairs,
+        root=out,
+        name=out.resolve().name,
+        asked=asked,
+        processes=processes(command.jobs),
+        allow_mixed=command.allow_mixed,
+    )
+    if command.dry_run:
+        _say_plan(job, command)
+        return 0
+    again = ["scenegen", "render", *arguments, *([] if command.out else ["--out", str(out)])]
+    if pairs != command.pairs and not command.json:
+        say(f"{command.pairs:,} pairs are rounded up to {pairs:,}: whole clips of {recipe.pairs_per_clip}")
+    return make(job, again, check_after=command.verify, as_json=command.json)
+
+
+def ask(file: Path | None, size: str | None, flags: Mapping[str, Any]) -> tuple[dict[str, Any], Recipe]:
+    """What was asked for, and the recipe that follows from it.
+
+    Parameters
+    ----------
+    file : Path or None
+        Recipe file.
+    size : str or None
+        As `Render.size`.
+    flags : mapping
+        Recipe keys from the command line, nested.
+    """
+    sources = [Source(str(file), read_mapping(file))] if file is not None else []
+    if size is not None:
+        width, height = parse_size(size)
+        sources.append(Source(f"--size {size}", {"camera": {"width_px": width, "height_px": height}}))
+    sources.append(Source("", flags))
+    recipe = resolve_recipe(sources)
+    return merge(source.values for source in sources), recipe
+
+
+def _say_plan(job: Job, command: Render) -> None:
+    splits = {name: sum(c.pairs for c in job.clips if c.split == name) for name in ("train", "val", "test")}
+    if command.json:
+        say_json(
+            {
+                "root": str(job.root),
+                "pairs": job.pairs,
+                "clips": len(job.clips),
+                "splits": splits,
+                "bytes": job.bytes,
+                "recipe": job.recipe.canonical(),
+            }
+        )
+        return
+    say(f"{job.root}: {plan_in_words(job)}")
+    say("splits: " + ", ".join(f"{count:,} pairs {name}" for name, count in splits.items()))
+
+
+def _recipe_help() -> str:
+    """All recipe keys, generated from the recipe itself."""
+    lines = [
+        "",
+        "",
+        "recipe keys, as flags here or in a YAML file (a range is two numbers: --climate.hour 20 23):",
+    ]
+    for key, meaning, default in leaves(Recipe):
+        shown = " ".join(map(str, default)) if isinstance(default, tuple) else default
+        lines.append(f"  --{key.replace('_', '-')}  {meaning} ({'drawn' if default is None else shown})")
+    return "\n".join(lines)
