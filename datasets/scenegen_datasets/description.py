@@ -40,10 +40,9 @@ def describe(
     version: str,
     content_id: str,
     missing: Sequence[ClipJob],
-    sums: Mapping[str, str],
     shard_bytes: int,
 ) -> dict[str, Any]:
-    """Compose the content of ``dataset.json``, sealed.
+    """Compose the content of ``dataset.json``; `sealed_description` makes it proof of the files beside it.
 
     Raises
     ------
@@ -51,42 +50,40 @@ def describe(
         If the clips disagree on image size, band or scale of the sensor.
     """
     jobs = [r.job for r in records]
-    return with_seal(
-        {
-            "name": lock["name"],
-            "version": version,
-            "schema_version": SCHEMA,
-            "recipe_id": lock["recipe_id"],
-            "content_id": content_id,
-            "fingerprints": [lock["fingerprint"], *lock["mixed_with"]],
-            "conventions": CONVENTIONS,
-            "grid": _common(
-                records, lambda r: {"height_px": r.height_px, "width_px": r.width_px}, "image size"
-            ),
-            "band_um": _common(records, lambda r: list(r.band_um), "band"),
-            "sensor": _common(records, lambda r: dict(r.sensor), "sensor"),
-            "layers": [_layer(name) for name in layers],
-            "members": [m for m in MEMBERS if m == "json" or any(LAYERS[x].member == m for x in layers)],
-            "counts": {
-                "pairs": sum(j.pairs for j in jobs),
-                "frames": sum(j.frames for j in jobs),
-                "clips": len(jobs),
-                "worlds": len({(j.map, j.world) for j in jobs}),
-                "shard_bytes": shard_bytes,
-            },
-            "splits": {s: _split(s, jobs) for s in SPLITS},
-            "maps": sorted({j.map for j in jobs}),
-            "ranges": {name: list(span) for name, span in ranges_of(records).items()},
-            "missing": [j.name for j in missing],
-            "sums": dict(sums),
-            "classes": [
-                {"id": int(c.id), "name": c.name, "colour": list(c.colour), "thing": c.thing} for c in CLASSES
-            ],
-            "materials": [
-                {"id": m.id, "name": m.name, "emissivity": m.emissivity} for m in materials().values()
-            ],
-        }
-    )
+    return {
+        "name": lock["name"],
+        "version": version,
+        "schema_version": SCHEMA,
+        "recipe_id": lock["recipe_id"],
+        "content_id": content_id,
+        "fingerprints": [lock["fingerprint"], *lock["mixed_with"]],
+        "conventions": CONVENTIONS,
+        "grid": _common(records, lambda r: {"height_px": r.height_px, "width_px": r.width_px}, "image size"),
+        "band_um": _common(records, lambda r: list(r.band_um), "band"),
+        "sensor": _common(records, lambda r: dict(r.sensor), "sensor"),
+        "layers": [_layer(name) for name in layers],
+        "members": [m for m in MEMBERS if m == "json" or any(LAYERS[x].member == m for x in layers)],
+        "counts": {
+            "pairs": sum(j.pairs for j in jobs),
+            "frames": sum(j.frames for j in jobs),
+            "clips": len(jobs),
+            "worlds": len({(j.map, j.world) for j in jobs}),
+            "shard_bytes": shard_bytes,
+        },
+        "splits": {s: _split(s, jobs) for s in SPLITS},
+        "maps": sorted({j.map for j in jobs}),
+        "ranges": {name: list(span) for name, span in ranges_of(records).items()},
+        "missing": [j.name for j in missing],
+        "classes": [
+            {"id": int(c.id), "name": c.name, "colour": list(c.colour), "thing": c.thing} for c in CLASSES
+        ],
+        "materials": [{"id": m.id, "name": m.name, "emissivity": m.emissivity} for m in materials().values()],
+    }
+
+
+def sealed_description(description: Mapping[str, Any], sums: Mapping[str, str]) -> bytes:
+    """Return the file: `description`, the SHA-256 of every other derived file, and a seal over all of it."""
+    return canonical.pretty(with_seal({**description, "sums": dict(sums)}))
 
 
 def read_description(path: Path) -> dict[str, Any]:
@@ -97,7 +94,8 @@ def read_description(path: Path) -> dict[str, Any]:
     DatasetError
         If it is missing, damaged, or of a newer schema.
     """
-    value = canonical.parse(read_bounded(path, _MAX_BYTES), str(path))
+    data = read_bounded(path, _MAX_BYTES)
+    value = canonical.parse(data, str(path))
     if (
         isinstance(value, dict)
         and isinstance(value.get("schema_version"), int)
@@ -106,7 +104,10 @@ def read_description(path: Path) -> dict[str, Any]:
         raise DatasetError(
             f"{path}: schema {value['schema_version']}, this version reads {SCHEMA}; update scenegen"
         )
-    return check_seal(value, str(path))
+    body = check_seal(value, str(path))
+    if canonical.pretty(value) != data:
+        raise DatasetError(f"{path}: changed or damaged (not laid out as it was written)")
+    return body
 
 
 def _layer(name: str) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from scenegen_datasets.card import card
 from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.content import clip_digest, content_id
 from scenegen_datasets.croissant import croissant
-from scenegen_datasets.description import describe
+from scenegen_datasets.description import describe, sealed_description
 from scenegen_datasets.index import Rows, rows_of, write_index
 from scenegen_datasets.info import DatasetInfo, info
 from scenegen_datasets.job import ClipJob
@@ -122,23 +122,21 @@ def finish(root: Path, jobs: Sequence[ClipJob], *, version: str = "1.0.0") -> Da
         version=version,
         content_id=content_id(tally.digests),
         missing=missing,
-        sums={name: file_sha256(root / name) for name in (CLIPS, INDEX)},
         shard_bytes=tally.shard_bytes,
     )
     write_atomic(root / CARD, card(description))
     write_atomic(root / CROISSANT, canonical.pretty(croissant(description, tally.sums)))
-    last = canonical.pretty(description)
-    sums = tally.sums | {DATASET: hashlib.sha256(last).hexdigest()} | _plain_sums(root)
+    derived = {name: file_sha256(root / name) for name in (RECIPE, LOCK, CLIPS, INDEX, CARD, CROISSANT)}
+    last = sealed_description(description, derived)
+    sums = tally.sums | derived | {DATASET: hashlib.sha256(last).hexdigest()} | _preview_sums(root)
     write_atomic(root / MANIFEST, manifest_bytes(sums))
     write_atomic(root / DATASET, last)
     return info(root)
 
 
-def _plain_sums(root: Path) -> dict[str, str]:
-    names = [RECIPE, LOCK, CLIPS, INDEX, CARD, CROISSANT]
+def _preview_sums(root: Path) -> dict[str, str]:
     preview = root / "preview"
-    if preview.is_dir() and not preview.is_symlink():
-        names += [
-            str(p.relative_to(root)) for p in sorted(preview.rglob("*")) if p.is_file() and not p.is_symlink()
-        ]
-    return {name: file_sha256(root / name) for name in names}
+    if not preview.is_dir() or preview.is_symlink():
+        return {}
+    pictures = (p for p in sorted(preview.rglob("*")) if p.is_file() and not p.is_symlink())
+    return {str(p.relative_to(root)): file_sha256(p) for p in pictures}

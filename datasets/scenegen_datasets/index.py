@@ -57,7 +57,7 @@ _GEOMETRY = [("time_s", "<f8"), ("world_from_camera", "<f8", (4, 4)), ("K", "<f8
 ROW = np.dtype([*_HEAD, *_MEMBER_FIELDS, *_STATISTICS, *_GEOMETRY, ("row_crc32", "<u4")])
 """One row. A member that was not written has size 0; a statistic that does not exist is NaN."""
 
-Rows = NDArray[np.void]
+Rows = NDArray[Any]
 
 
 def rows_of(receipt: Receipt) -> Rows:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from scenegen_datasets.description import ranges_of, read_description
 from scenegen_datasets.job import SPLITS
@@ -85,7 +86,7 @@ def info(root: Path) -> DatasetInfo:
     )
 
 
-def _growing(root: Path, lock: Mapping[str, str], planned: int | None) -> DatasetInfo:
+def _growing(root: Path, lock: Mapping[str, Any], planned: int | None) -> DatasetInfo:
     receipts = [read_receipt(root, path) for path in receipt_paths(root)]
     jobs = [r.clip.job for r in receipts]
     return DatasetInfo(

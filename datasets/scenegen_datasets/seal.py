@@ -28,15 +28,26 @@ def unsealed(name: str, data: bytes, where: str) -> dict[str, Any]:
     DatasetError
         If the bytes are not whole, or the body is not a mapping.
     """
+    value = canonical.parse(sealed_body(name, data, where), where)
+    if not isinstance(value, dict):
+        raise DatasetError(f"{where}: not a mapping")
+    return value
+
+
+def sealed_body(name: str, data: bytes, where: str) -> bytes:
+    """Return the bytes of the body without parsing them.
+
+    Raises
+    ------
+    DatasetError
+        If the bytes are not whole.
+    """
     head = b'{"%s":' % name.encode()
     body = data[len(head) : -_TAIL - len(_MIDDLE)]
     expected = b'%s%s%s%s"}\n' % (head, body, _MIDDLE, hashlib.sha256(body).hexdigest().encode())
     if data != expected:
         raise DatasetError(f"{where}: damaged (its own checksum does not match)")
-    value = canonical.parse(body, where)
-    if not isinstance(value, dict):
-        raise DatasetError(f"{where}: not a mapping")
-    return value
+    return body
 
 
 def with_seal(body: Mapping[str, Any]) -> dict[str, Any]:

@@ -10,8 +10,8 @@ from scenegen.foundation import canonical
 from scenegen.foundation.atomic import make_directories, remove, remove_partials, write_atomic
 from scenegen.foundation.errors import DatasetError, InputError, NoSpaceError
 from scenegen_datasets.lock import stable
-from scenegen_datasets.receipt import receipt_paths
-from scenegen_datasets.seal import read_bounded, unsealed
+from scenegen_datasets.receipt import promised_size, receipt_paths, shard_of
+from scenegen_datasets.seal import read_bounded
 
 RECIPE, LOCK, DATASET, MANIFEST = "recipe.yaml", "recipe.lock.json", "dataset.json", "MANIFEST.sha256"
 INDEX, CLIPS, CARD, CROISSANT = "index.npy", "clips.jsonl", "README.md", "croissant.json"
@@ -114,14 +114,13 @@ def finished(root: Path) -> set[str]:
     """Names of the clips whose receipt is sound and whose shard has the right size; the rest is to be done."""
     names = set()
     for path in receipt_paths(root):
+        file = root / shard_of(path)
         try:
-            body = unsealed("receipt", read_bounded(root / path, 64 << 20), path)
-            shard, job = body["shard"], body["clip"]["job"]
-            file = root / path.replace("receipts/", "shards/", 1).replace(".json", ".tar")
-            if file.is_file() and not file.is_symlink() and file.stat().st_size == shard["size"]:
-                names.add(f"{job['map']}-{job['world']:05d}-{job['clip']:03d}")
-        except (DatasetError, KeyError, TypeError, ValueError):
+            size = promised_size(root, path)
+        except DatasetError:
             continue
+        if file.is_file() and not file.is_symlink() and file.stat().st_size == size:
+            names.add(f"{file.parent.name}-{file.stem}")
     return names
 
 

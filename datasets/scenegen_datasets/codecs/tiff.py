@@ -47,7 +47,10 @@ def decode(data: bytes, shape: tuple[int, int]) -> NDArray[np.float32]:
     import cv2
 
     _check(data, shape)
-    image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+    try:
+        image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
+    except cv2.error:
+        image = None
     if image is None or image.dtype != np.float32 or image.shape != shape:
         raise CorruptFrameError("TIFF does not decode")
     return np.asarray(image)

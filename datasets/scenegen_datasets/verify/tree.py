@@ -30,8 +30,13 @@ def check_tree(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
     if DATASET not in files:
         yield Finding(DATASET, "missing: the dataset still grows; finish it with the same render command")
         return
-    yield from _manifest(root, files, sound)
-    yield from _description(root, sound)
+    description: dict[str, Any] = {}
+    try:
+        description = read_description(root / DATASET)
+        yield from _description(root, description, sound)
+    except DatasetError as error:
+        yield Finding(DATASET, _bare(error))
+    yield from _sums(root, files, sound, description)
     yield from _clips(root, sound)
     yield from _index(root, sound)
 
@@ -70,34 +75,44 @@ def _walk(root: Path) -> tuple[set[str], list[Finding]]:
     return files, odd
 
 
-def _manifest(root: Path, files: set[str], checks: Sequence[ClipCheck]) -> Iterator[Finding]:
+def _sums(
+    root: Path, files: set[str], checks: Sequence[ClipCheck], description: Mapping[str, Any]
+) -> Iterator[Finding]:
+    """Compare files and manifest; what proves itself (receipts, description) tells which of the two is wrong."""
     try:
-        sums = read_manifest(root / MANIFEST)
+        manifest: dict[str, str] | None = read_manifest(root / MANIFEST)
     except DatasetError as error:
         yield Finding(MANIFEST, _bare(error))
-        return
-    shards = {c.job.shard: c.sha256 for c in checks if c.job is not None}
-    for path, expected in sums.items():
+        manifest = None
+    listed = manifest or {}
+    proven = _proven(root, checks, description)
+    shards = {c.job.shard for c in checks if c.job is not None}
+    for path in sorted(proven.keys() | listed.keys()):
+        expected = proven.get(path, listed.get(path))
         if path not in files:
             yield Finding(path, "missing")
-        elif path in shards:  # its bytes were compared with the receipt already
-            if shards[path] != expected:
-                yield Finding(path, "the receipt's SHA-256 differs from the manifest")
-        elif not path.startswith("shards/") and file_sha256(root / path) != expected:
-            yield Finding(path, "SHA-256 differs from the manifest")
-    outside = {MANIFEST, RUN_LOG, WRITER_LOCK}
-    for path in sorted(files - sums.keys() - outside):
+        elif path not in shards and not path.startswith("shards/") and file_sha256(root / path) != expected:
+            yield Finding(path, "SHA-256 differs from what was written")
+        if manifest is not None and listed.get(path) != expected:
+            yield Finding(MANIFEST, f"{'disagrees on' if path in listed else 'does not list'} {path}")
+    for path in sorted(files - proven.keys() - listed.keys() - {MANIFEST, DATASET, RUN_LOG, WRITER_LOCK}):
         if not path.startswith(("preview/", RUN_LOG)):
             yield Finding(path, "does not belong to the dataset (not in the manifest)")
 
 
-def _description(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
-    try:
-        told = read_description(root / DATASET)
-        lock = read_lock(root)
-    except DatasetError as error:
-        yield Finding(DATASET, _bare(error))
-        return
+def _proven(root: Path, checks: Sequence[ClipCheck], description: Mapping[str, Any]) -> dict[str, str]:
+    """SHA-256 by path, from files that carry their own checksum."""
+    sums = dict(description.get("sums", {}))
+    if description:
+        sums[DATASET] = file_sha256(root / DATASET)
+    for check in checks:
+        assert check.job is not None
+        sums |= {check.job.shard: check.sha256, check.receipt: file_sha256(root / check.receipt)}
+    return sums
+
+
+def _description(root: Path, told: Mapping[str, Any], checks: Sequence[ClipCheck]) -> Iterator[Finding]:
+    lock = read_lock(root)
     jobs = [c.job for c in checks if c.job is not None]
     facts: dict[str, Any] = {
         "content_id": content_id(c.digest for c in checks),
