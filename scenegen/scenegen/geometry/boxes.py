@@ -17,6 +17,8 @@ def boxes(
     semantic: Int64[np.ndarray, "boxes"],
     owner: Int64[np.ndarray, "boxes"],
     spacing_m: float = 4.0,
+    top_surface: Int64[np.ndarray, "boxes"] | None = None,
+    top_semantic: int | None = None,
 ) -> Part:
     """Boxes standing on their underside.
 
@@ -32,12 +34,17 @@ def boxes(
         Labels.
     spacing_m : float
         Largest distance between sites of a face [m].
+    top_surface, top_semantic : int64 (boxes,), int; optional
+        Labels of the upper side where they differ.
     """
     corners = box_corners(centre, size, heading_rad)
     sides = corners[:, [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 5, 6, 7]]]
-    return patches(
-        sides.reshape(-1, 4, 3), spacing_m, np.repeat(surface, 5), np.repeat(semantic, 5), np.repeat(owner, 5)
-    )
+    skin, label = np.repeat(surface, 5), np.repeat(semantic, 5)
+    if top_surface is not None:
+        skin[4::5] = top_surface
+    if top_semantic is not None:
+        label[4::5] = top_semantic
+    return patches(sides.reshape(-1, 4, 3), spacing_m, skin, label, np.repeat(owner, 5))
 
 
 def box_corners(

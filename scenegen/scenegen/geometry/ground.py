@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from jaxtyping import Float64, Int64
+from jaxtyping import Bool, Float64, Int64
 
 from scenegen.geometry.part import STANDOFF_M, Part, concatenate, face_normals
 from scenegen.geometry.patch import quads_to_triangles
@@ -33,9 +33,11 @@ class Region:
     surface, semantic, object : int
         Labels of its faces.
     level_m : float
-        Height above the relief [m].
+        Height above the relief [m], or above zero if `absolute`.
     hole : bool
         True where there is no ground at all: under a building.
+    absolute : bool
+        True for a level surface: a pond, a flat roof.
     """
 
     outline: shapely.Polygon
@@ -44,6 +46,7 @@ class Region:
     object: int
     level_m: float = 0.0
     hole: bool = False
+    absolute: bool = False
 
 
 def drape(plan: Triangulation, regions: Sequence[Region], relief: Relief) -> Part:
@@ -76,7 +79,8 @@ class _Table:
     semantic: Int64[np.ndarray, "regions"]
     object: Int64[np.ndarray, "regions"]
     level: Float64[np.ndarray, "regions"]
-    hole: np.ndarray
+    hole: Bool[np.ndarray, "regions"]
+    absolute: Bool[np.ndarray, "regions"]
 
     @staticmethod
     def of(regions: Sequence[Region]) -> _Table:
@@ -86,18 +90,24 @@ class _Table:
             np.array([r.object for r in regions], np.int64),
             np.array([r.level_m for r in regions], np.float64),
             np.array([r.hole for r in regions], bool),
+            np.array([r.absolute for r in regions], bool),
         )
+
+    def height(self, region: np.ndarray, relief_m: np.ndarray) -> np.ndarray:
+        """Height [m] of points of regions where the relief has the given height."""
+        return np.asarray(self.level[region] + np.where(self.absolute[region], 0.0, relief_m))
 
 
 def _surface(
     points: np.ndarray, height: np.ndarray, triangles: np.ndarray, region: np.ndarray, table: _Table
 ) -> Part:
-    levels, level_index = np.unique(table.level, return_inverse=True)
-    corner_level = np.repeat(level_index[region], 3)
-    pairs = triangles.ravel() * len(levels) + corner_level
+    keys = np.stack([table.level, table.absolute], axis=1)
+    _, sample, level_index = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    level_index = level_index.ravel()
+    pairs = triangles.ravel() * len(sample) + np.repeat(level_index[region], 3)
     vertex, faces = np.unique(pairs, return_inverse=True)
-    xy, z = points[vertex // len(levels)], height[vertex // len(levels)] + levels[vertex % len(levels)]
-    vertices = np.column_stack([xy, z])
+    point = vertex // len(sample)
+    vertices = np.column_stack([points[point], table.height(sample[vertex % len(sample)], height[point])])
     faces = faces.reshape(-1, 3)
 
     kinds, kind = np.unique(
@@ -153,20 +163,16 @@ def _steps(
     order = np.argsort(code, kind="stable")
     pair = code[order][1:] == code[order][:-1]
     one, two = order[:-1][pair], order[1:][pair]
-    rise = table.level[owner[one]] - table.level[owner[two]]
+    middle = (height[start[one]] + height[end[one]]) / 2
+    rise = table.height(owner[one], middle) - table.height(owner[two], middle)
     high = np.concatenate([one[rise > 1e-6], two[rise < -1e-6]])
     low = np.concatenate([two[rise > 1e-6], one[rise < -1e-6]])
     if not len(high):
         return []
-    a, b = start[high], end[high]
-    top, bottom = table.level[owner[high]], table.level[owner[low]]
+    a, b, upper, lower = start[high], end[high], owner[high], owner[low]
+    ends = ((a, lower), (b, lower), (b, upper), (a, upper))
     corners = np.stack(
-        [
-            np.column_stack([points[a], height[a] + bottom]),
-            np.column_stack([points[b], height[b] + bottom]),
-            np.column_stack([points[b], height[b] + top]),
-            np.column_stack([points[a], height[a] + top]),
-        ],
+        [np.column_stack([points[p], table.height(side, height[p])]) for p, side in ends],
         axis=1,
     )
     return [_step_part(corners, owner[high], table)]

@@ -42,6 +42,7 @@ def patches(
     semantic: Int64[np.ndarray, "items"],
     owner: Int64[np.ndarray, "items"],
     standoff_m: float = STANDOFF_M,
+    lumped_rows: bool = False,
 ) -> Part:
     """Tessellate quads; two corners may coincide (a triangle), the faces without area go when the world is merged.
 
@@ -55,6 +56,8 @@ def patches(
         Labels of each patch.
     standoff_m : float
         Standoff of the sites [m].
+    lumped_rows : bool
+        One row of sites along the middle, for strips too narrow to have a gradient across.
     """
     bottom, top = np.linalg.norm(corners[:, [1, 2]] - corners[:, [0, 3]], axis=2).T
     right, left = np.linalg.norm(corners[:, [2, 3]] - corners[:, [1, 0]], axis=2).T
@@ -70,15 +73,19 @@ def patches(
     cell_item, _, _, quads = lattice_quads(columns, rows)
     faces = quads_to_triangles(quads)
     face_item = np.repeat(cell_item, 2)
-    middle = corners.mean(axis=1)[item]
+    corner_site, position, site_item = faces, points + (corners.mean(axis=1)[item] - points) * 0.02, item
+    if lumped_rows:
+        site = offsets(columns)[item] + i
+        middle = np.stack([np.bincount(site, points[:, k]) / rows[np.repeat(np.arange(len(columns)), columns)] for k in range(3)])
+        corner_site, position, site_item = site[faces], middle.T, np.repeat(np.arange(len(columns)), columns)
     return Part(
         vertices=points,
         faces=faces,
         surface=surface[face_item],
         semantic=semantic[face_item],
         object=owner[face_item],
-        corner_site=faces,
-        site_position=points + (middle - points) * 0.02,
-        site_normal=normal[item],
-        site_standoff=np.full(len(points), standoff_m),
+        corner_site=corner_site,
+        site_position=position,
+        site_normal=normal[site_item],
+        site_standoff=np.full(len(position), standoff_m),
     )

@@ -37,7 +37,7 @@ class Triangulation:
 def triangulate(
     regions: Sequence[shapely.Polygon],
     free_points: Float64[np.ndarray, "free 2"],
-    line_spacing_m: float,
+    line_spacing_m: float | Float64[np.ndarray, "regions"],
     far_spacing: tuple[float, float] = (1e9, 0.0),
 ) -> Triangulation:
     """Triangulate a stack of polygons; where they overlap, the last one wins.
@@ -48,13 +48,14 @@ def triangulate(
         Painted in order; holes are respected.
     free_points : float64 (free, 2)
         Points wanted inside regions, in order of preference; those too close to a line are dropped.
-    line_spacing_m : float
-        Largest distance between points along lines [m].
+    line_spacing_m : float or float64 (regions,)
+        Largest distance between points along the outline of each region [m]; the finest one holds where they meet.
     far_spacing : (float, float)
         Distance from the origin [m] beyond which the spacing along lines grows, and the growth per metre.
     """
     points, segments = _node(regions)
-    points, segments = _densify(points, segments, line_spacing_m, far_spacing)
+    spacing = _spacing(points, segments, regions, line_spacing_m)
+    points, segments = _densify(points, segments, spacing, far_spacing)
     points, segments, extra = _make_gabriel(points, segments, free_points)
     everything = np.concatenate([points, extra])
     triangles = _delaunay(everything)
@@ -73,8 +74,22 @@ def _node(regions: Sequence[shapely.Polygon]) -> tuple[np.ndarray, np.ndarray]:
     return key * GRID_M, pairs
 
 
+def _spacing(
+    points: np.ndarray, segments: np.ndarray, regions: Sequence[shapely.Polygon], spacing_m: float | np.ndarray
+) -> np.ndarray:
+    """Spacing wanted on each segment: the base one, or a finer one where it lies on a region's outline."""
+    wanted = np.broadcast_to(np.asarray(spacing_m, np.float64), (len(regions),))
+    result = np.full(len(segments), wanted.max())
+    middle = shapely.points((points[segments[:, 0]] + points[segments[:, 1]]) / 2)
+    for value in np.unique(wanted)[::-1][1:]:
+        lines = shapely.boundary(np.asarray(regions, dtype=object)[wanted == value])
+        near = shapely.STRtree(lines).query(middle, predicate="dwithin", distance=2 * GRID_M)[0]
+        result[near] = value
+    return result
+
+
 def _densify(
-    points: np.ndarray, segments: np.ndarray, spacing_m: float, far: tuple[float, float]
+    points: np.ndarray, segments: np.ndarray, spacing_m: np.ndarray, far: tuple[float, float]
 ) -> tuple[np.ndarray, np.ndarray]:
     """Split segments into equal pieces no longer than the spacing wanted where they lie."""
     a, b = points[segments[:, 0]], points[segments[:, 1]]
@@ -104,25 +119,33 @@ def _make_gabriel(
     points: np.ndarray, segments: np.ndarray, free: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Split segments whose diametral circle holds a line point; drop free points inside any such circle."""
+    fresh = points
     for _ in range(_ROUNDS):
         middle, radius = _circles(points, segments)
-        nearest, _ = cKDTree(points).query(middle)
+        nearest, _ = cKDTree(fresh).query(middle, distance_upper_bound=float(radius.max()))
+        split = np.zeros(len(segments), bool) if fresh is points else segments.max(axis=1) >= len(points) - len(fresh)
+        if split.any():
+            nearest[split] = np.minimum(nearest[split], cKDTree(points).query(middle[split])[0])
         bad = (nearest < radius - 1e-7) & (radius > _SHORTEST_M)
         if not bad.any():
             break
+        before = len(points)
         points, segments = _split(points, segments, 1 + bad.astype(np.int64))
+        fresh = points[before:]
+    return points, segments, _clear_free(points, segments, free)
+
+
+def _clear_free(points: np.ndarray, segments: np.ndarray, free: np.ndarray) -> np.ndarray:
+    """Free points outside all diametral circles, and not too close to any line point."""
     middle, radius = _circles(points, segments)
     reach = np.zeros(len(points))
     np.maximum.at(reach, segments.ravel(), np.repeat(radius, 2))
     distance, index = cKDTree(points).query(free)
     free = free[distance > np.maximum(1.5 * reach[index], 0.3)]
-    for _ in range(_ROUNDS):
-        nearest, hit = cKDTree(free).query(middle)
-        close = nearest < radius + 1e-7
-        if not close.any():
-            break
-        free = np.delete(free, np.unique(hit[close]), axis=0)
-    return points, segments, free
+    nearest, _ = cKDTree(free).query(middle)
+    close = nearest < radius + 1e-7
+    inside = cKDTree(free).query_ball_point(middle[close], radius[close] + 1e-7)
+    return np.delete(free, np.unique([k for hits in inside for k in hits]).astype(np.int64), axis=0)
 
 
 def _circles(points: np.ndarray, segments: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
+import shapely
 from jaxtyping import Float64
 
 
@@ -29,16 +32,53 @@ def hexagonal(
 
 
 def graded_points(
-    half_m: float, far_m: float, spacing_m: float, rng: np.random.Generator, growth: float = 2.0
+    core: shapely.Polygon, far_m: float, spacing_m: float, rng: np.random.Generator
 ) -> Float64[np.ndarray, "points 2"]:
-    """Fine lattice on a square, then ever coarser square rings out to `far_m`."""
-    points = [hexagonal(-half_m, -half_m, half_m, half_m, spacing_m, rng)]
-    inner, spacing = half_m, spacing_m
-    while inner < far_m:
-        spacing = min(spacing * growth, far_m / 12)
-        outer = min(inner + 5 * spacing, far_m)
-        ring = hexagonal(-outer, -outer, outer, outer, spacing, rng)
-        reach = np.abs(ring).max(axis=1)
-        points.append(ring[(reach > inner + 0.3 * spacing) & (reach < far_m - 1.0)])
+    """Fine lattice on a polygon, then ever coarser bands around it, each twice as coarse and wide as the last.
+
+    Parameters
+    ----------
+    core : shapely.Polygon
+        Where the lattice is fine.
+    far_m : float
+        Half the side of the square that is covered [m].
+    spacing_m : float
+        Of the fine lattice [m].
+    rng : numpy.random.Generator
+    """
+    shapely.prepare(core)
+    points = hexagonal(*core.bounds, spacing_m, rng)
+    bands = [points[shapely.contains_xy(core, points)]]
+    x0, y0, x1, y1 = core.bounds
+    inner, spacing = 0.0, spacing_m
+    while inner < 2 * far_m:
+        spacing = min(2.0 * spacing, far_m / 10)
+        outer = inner + 4 * spacing
+        box = np.clip([x0 - outer, y0 - outer, x1 + outer, y1 + outer], 1.0 - far_m, far_m - 1.0)
+        ring = hexagonal(*box.tolist(), spacing, rng)
+        ring = ring[np.abs(ring).max(axis=1) < far_m - 0.3 * spacing]
+        distance = shapely.distance(shapely.points(ring), core)
+        bands.append(ring[(distance > inner + 0.3 * spacing) & (distance <= outer)])
         inner = outer
-    return np.concatenate(points)
+    return np.concatenate(bands)
+
+
+def contact_points(
+    outlines: Sequence[shapely.Polygon], spacing_m: float, distance_m: float
+) -> Float64[np.ndarray, "points 2"]:
+    """A row of points around outlines: the ground near a contact line needs a finer mesh.
+
+    Parameters
+    ----------
+    outlines : sequence of shapely.Polygon
+    spacing_m : float
+        Distance between points of the row [m].
+    distance_m : float
+        Of the row from the outline [m].
+    """
+    rows = shapely.boundary(shapely.buffer(np.asarray(outlines, dtype=object), distance_m, join_style="mitre"))
+    points = []
+    for row in shapely.get_parts(shapely.get_parts(rows)):
+        count = max(int(np.ceil(row.length / spacing_m)), 3)
+        points.append(shapely.get_coordinates(shapely.line_interpolate_point(row, np.arange(count) * row.length / count)))
+    return np.concatenate([np.zeros((0, 2)), *points])

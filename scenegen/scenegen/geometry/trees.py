@@ -33,7 +33,7 @@ def _icosahedron() -> np.ndarray:
     return points / np.linalg.norm(points, axis=1)[:, None]
 
 
-def broadleaf(rng: np.random.Generator, boughs: int = 7, cards: int = 80) -> Template:
+def broadleaf(rng: np.random.Generator, boughs: int = 6, cards: int = 64) -> Template:
     """A broad-leaved tree of unit height 1 and crown diameter about 0.75; scale it to size.
 
     Parameters
@@ -55,7 +55,7 @@ def broadleaf(rng: np.random.Generator, boughs: int = 7, cards: int = 80) -> Tem
     return model.finish()
 
 
-def conifer(rng: np.random.Generator, tiers: int = 6, cards: int = 72) -> Template:
+def conifer(rng: np.random.Generator, tiers: int = 6, cards: int = 60) -> Template:
     """A conifer of unit height and base diameter about 0.4; scale it to size."""
     level = (np.arange(tiers) + 0.5) / tiers
     middle = np.column_stack([rng.normal(0, 0.01, tiers), rng.normal(0, 0.01, tiers), 0.14 + 0.8 * level])
@@ -63,6 +63,23 @@ def conifer(rng: np.random.Generator, tiers: int = 6, cards: int = 72) -> Templa
     model = Modeller()
     model.tube(np.zeros(3), np.array([0, 0, 0.9]), 0.02, 0.006, BARK, Semantic.TREE, sides=5, sites=2)
     _crown(model, rng, np.array([0, 0, 0.5]), np.array([0.24, 0.24, 0.52]), middle, size, cards, 0.05)
+    return model.finish()
+
+
+def grove(rng: np.random.Generator, boughs: int = 8) -> Template:
+    """A mass of trees of unit diameter and height, for the distance; one slot, four sites."""
+    model = Modeller()
+    ball = _icosahedron()
+    directions = _fibonacci(6)[:4] * np.array([1, 1, 0.7])
+    centre, radii = np.array([0, 0, 0.4]), np.array([0.6, 0.6, 0.7])
+    first = [model.site(centre + d / np.linalg.norm(d) * radii, d / radii) for d in directions]
+    spread = np.sqrt(rng.uniform(0.0, 1.0, boughs)) * 0.4
+    angle = 2.4 * np.arange(boughs)
+    for r, a in zip(spread, angle, strict=True):
+        size = rng.uniform(0.12, 0.2) * np.array([1, 1, 2.2])
+        lump = ball * rng.uniform(0.75, 1.0, (12, 1)) * size + np.array([r * np.cos(a), r * np.sin(a), 0.45 - 0.3 * r])
+        site = first[0] + np.argmax((lump - centre) @ directions.T, axis=1)
+        model.mesh(lump, _ICOSAHEDRON_FACES, 0, Semantic.TREE, site[_ICOSAHEDRON_FACES])
     return model.finish()
 
 
@@ -76,8 +93,8 @@ def _fibonacci(count: int) -> np.ndarray:
 
 def _trunk(model: Modeller, rng: np.random.Generator, boughs: np.ndarray) -> None:
     fork = np.array([rng.normal(0, 0.01), rng.normal(0, 0.01), 0.34])
-    model.tube(np.array([0, 0, -0.03]), fork, 0.024, 0.017, BARK, Semantic.TREE, sides=7, sites=3)
-    for tip in boughs[:5]:
+    model.tube(np.array([0, 0, -0.03]), fork, 0.024, 0.017, BARK, Semantic.TREE, sides=6, sites=2)
+    for tip in boughs[:3]:
         model.tube(fork, fork + 0.8 * (tip - fork), 0.011, 0.004, BARK, Semantic.TREE, sides=4)
 
 
@@ -132,3 +149,26 @@ def _cards(
     droop = -0.35 * half * facing
     corners = [middle - half * u + droop, middle - half * v, middle + half * u + droop, middle + half * v]
     return np.stack(corners, axis=1)
+
+
+def shrub(rng: np.random.Generator, cards: int = 8) -> Template:
+    """A shrub or a metre of hedge of unit size, standing on z = 0; one slot, three sites."""
+    model = Modeller()
+    centre, radii = np.array([0, 0, 0.5]), np.array([0.62, 0.62, 0.62])
+    directions = np.array([[0, -1.0, 0.4], [0, 1.0, 0.4], [0, 0, 1.0]])
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    first = [model.site(centre + d * radii, d) for d in directions]
+
+    def sites_of(points: np.ndarray) -> np.ndarray:
+        return first[0] + np.argmax((points - centre) @ directions.T, axis=1)
+
+    boughs = np.array([[-0.24, 0.0, 0.45], [0.24, 0.0, 0.48]])
+    for middle in boughs:
+        lump = middle + _icosahedron() * rng.uniform(0.75, 1.0, (12, 1)) * np.array([0.34, 0.5, 0.52])
+        model.mesh(lump, _ICOSAHEDRON_FACES, 0, Semantic.SHRUB, sites_of(lump)[_ICOSAHEDRON_FACES])
+    corners = _cards(rng, boughs, np.array([0.4, 0.4]), cards, 0.14, centre, radii)
+    corners[..., 2] = np.maximum(corners[..., 2], 0.05)
+    faces = np.arange(4 * cards).reshape(-1, 4)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    owner = np.repeat(sites_of(corners.mean(axis=1)), 2)
+    model.mesh(corners.reshape(-1, 3), faces, 0, Semantic.SHRUB, np.repeat(owner[:, None], 3, axis=1))
+    return model.finish()

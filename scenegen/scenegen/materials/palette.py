@@ -92,6 +92,7 @@ class PaletteBuilder:
                     )
                 ),
             )
+            assert sum(s.material.name == name for s in self._surfaces) <= MAX_VARIANTS
         return self._variants[entry][0]
 
     def surfaces(self) -> tuple[Surface, ...]:

@@ -1,64 +1,16 @@
-"""Buildings as plans: volumes with storeys, materials and a style, before they become geometry."""
+"""Buildings as plans: volumes with storeys and a style, before they become geometry."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
-from enum import StrEnum
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from jaxtyping import Float64
 
-from scenegen.maps.city.footprints import draw_footprint, street_heading
-from scenegen.maps.city.lots import largest_rectangle
-from scenegen.materials.palette import PaletteBuilder
-
-
-class Kind(StrEnum):
-    """What a building is."""
-
-    HOUSE = "house"
-    OFFICE = "office"
-    SHED = "shed"
-    TOWER = "tower"
-    PERIMETER = "perimeter"
-
-
-@dataclass(frozen=True)
-class Style:
-    """How the walls of a building look.
-
-    Attributes
-    ----------
-    wall, roof, glass, door, unit : int
-        Palette indices; `unit` is the sheet metal of roof equipment.
-    storey_m, first_storey_m : float
-    pitch_m : float
-        Distance between window columns [m].
-    window_share, sill_m, head_m : float
-        Window width over pitch; sill and head above the floor [m].
-    first_sill_m, first_head_m : float
-    blank_share : float
-        Share of cells without a window.
-    parapet_m : float
-    recess_m : float
-    """
-
-    wall: int
-    roof: int
-    glass: int
-    door: int
-    unit: int
-    storey_m: float
-    first_storey_m: float
-    pitch_m: float
-    window_share: float
-    sill_m: float
-    head_m: float
-    first_sill_m: float
-    first_head_m: float
-    blank_share: float
-    parapet_m: float
-    recess_m: float
+from scenegen.maps.city.footprints import draw_rings, polygon_of, rectangle_ring
+from scenegen.maps.city.lots import Lot
+from scenegen.maps.city.styles import Kind, Roof, Style
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,93 +19,124 @@ class Volume:
 
     Attributes
     ----------
-    outline : shapely.Polygon
+    rings : tuple of float64 (points, 2)
+        Outer ring counter-clockwise, then courtyards clockwise; open. A pitched roof wants one ring of four points.
     floor_m : float
         Floor of its lowest storey [m].
     storeys : int
     foundation_m : float
         How far its walls continue below the floor.
-    pitched : bool
+    form : Roof
+    covered : shapely.Polygon or None
+        Part of its roof that another tier stands on.
     """
 
-    outline: shapely.Polygon
+    rings: tuple[Float64[np.ndarray, "points 2"], ...]
     floor_m: float
     storeys: int
     foundation_m: float
-    pitched: bool = False
+    form: Roof
     covered: shapely.Polygon | None = None
 
-    def roof_m(self, style: Style) -> float:
-        """Height of the roof [m]."""
+    def eave_m(self, style: Style) -> float:
+        """Height of the flat roof or of the eaves [m]."""
         return self.floor_m + style.first_storey_m + (self.storeys - 1) * style.storey_m
 
 
 @dataclass(frozen=True, eq=False)
 class Building:
-    """One building: one instance."""
+    """One building: one instance.
+
+    Attributes
+    ----------
+    kind : Kind
+    object : int
+        Instance id.
+    style : Style
+    volumes : tuple of Volume
+    footprint : shapely.Polygon
+    front : float64 (2, 2) or None
+        Middle of its street front and the foot of its path on the sidewalk [m].
+    """
 
     kind: Kind
     object: int
     style: Style
     volumes: tuple[Volume, ...]
-    footprint: shapely.Polygon = field(repr=False)
+    footprint: shapely.Polygon
+    front: Float64[np.ndarray, "2 2"] | None = None
 
 
-_WALLS = {
-    Kind.HOUSE: ("brick_red", "stucco_render", "brick_red", "wood_siding"),
-    Kind.PERIMETER: ("brick_red", "stucco_render", "stucco_render", "limestone_marble"),
-    Kind.OFFICE: ("concrete_wall", "concrete_wall", "stucco_render", "brick_red"),
-    Kind.TOWER: ("concrete_wall", "concrete_wall", "stucco_render", "concrete_wall"),
-    Kind.SHED: ("metal_roof_painted_mid", "concrete_wall", "brick_red", "metal_galv_weathered"),
-}
-_FLAT_ROOFS = ("bitumen_felt_roof", "epdm_black_roof", "white_membrane_roof", "bitumen_felt_roof")
-_PITCHED_ROOFS = ("clay_roof_tile", "slate_roof", "asphalt_shingle", "clay_roof_tile")
+@dataclass(frozen=True)
+class Wish:
+    """What a lot's building should be like; all in metres.
+
+    Attributes
+    ----------
+    length_m, depth_m, setback_m : (float, float)
+        Ranges of size and of the distance from the sidewalk.
+    side_m : float
+        Distance kept from the neighbours' lots.
+    shaped : bool
+        Whether footprints other than rectangles may be drawn.
+    """
+
+    length_m: tuple[float, float]
+    depth_m: tuple[float, float]
+    setback_m: tuple[float, float]
+    side_m: float
+    shaped: bool
 
 
-def draw_style(kind: Kind, pitched: bool, palette: PaletteBuilder, rng: np.random.Generator) -> Style:
-    """Draw materials and proportions for a building."""
-    wall = _WALLS[kind][int(rng.integers(4))]
-    roofs = _PITCHED_ROOFS if pitched else _FLAT_ROOFS
-    roof = "metal_roof_painted_mid" if kind is Kind.SHED and rng.uniform() < 0.6 else roofs[int(rng.integers(4))]
-    modern = kind in (Kind.OFFICE, Kind.TOWER)
-    storey = rng.uniform(3.0, 3.7) if modern else rng.uniform(2.8, 3.4)
-    first = storey + (rng.uniform(0.3, 1.2) if kind is not Kind.HOUSE else 0.0)
-    share = rng.uniform(0.55, 0.85) if modern else rng.uniform(0.32, 0.5)
-    if kind is Kind.SHED:
-        storey, first, share = 5.0, rng.uniform(5.0, 8.0), rng.uniform(0.3, 0.6)
-    sill = rng.uniform(0.7, 1.0)
-    return Style(
-        wall=palette.pick(wall, rng),
-        roof=palette.pick(roof, rng),
-        glass=palette.pick("window_glass", rng),
-        door=palette.pick("wood_siding", rng),
-        unit=palette.pick("metal_galv_weathered", rng),
-        storey_m=storey,
-        first_storey_m=first,
-        pitch_m=rng.uniform(3.0, 4.6) if kind is not Kind.SHED else rng.uniform(4.5, 7.0),
-        window_share=share,
-        sill_m=sill,
-        head_m=min(sill + rng.uniform(1.3, 1.7), storey - 0.35),
-        first_sill_m=sill if kind is not Kind.SHED else first - 2.2,
-        first_head_m=first - rng.uniform(0.6, 0.9),
-        blank_share=rng.uniform(0.0, 0.12) if kind is not Kind.SHED else rng.uniform(0.3, 0.7),
-        parapet_m=rng.uniform(0.4, 1.1),
-        recess_m=rng.uniform(0.08, 0.18),
+def fit_footprint(
+    lot: Lot, wish: Wish, rng: np.random.Generator
+) -> tuple[tuple[np.ndarray, ...], np.ndarray] | None:
+    """Place a footprint behind the street front of a lot.
+
+    Returns
+    -------
+    rings, front : tuple of float64 (points, 2), float64 (2, 2)
+        Rings in the plan; middle of the front wall and of the sidewalk before it. None if the lot is too small.
+    """
+    length, depth = rng.uniform(*wish.length_m), rng.uniform(*wish.depth_m)
+    setback, lean = rng.uniform(*wish.setback_m), rng.uniform(-0.2, 0.2)
+    room = lot.local().buffer(-wish.side_m, join_style="mitre")
+    if room.is_empty:
+        return None
+    x0, _, x1, y1 = room.bounds
+    spare_x, spare_y = x1 - x0, y1
+    shrink = np.array([1.0, 0.88, 0.76, 0.64, 0.52])
+    a, b, shift, back = (
+        g.ravel()
+        for g in np.meshgrid(
+            np.minimum(length, 0.98 * spare_x) * shrink,
+            np.minimum(depth, 0.95 * spare_y) * shrink,
+            np.array([lean, 0.0, -0.35, 0.35]),
+            setback + np.array([0.0, 1.2, 3.0]),
+            indexing="ij",
+        )
     )
+    middle = (x0 + x1) / 2 + shift * (spare_x - a)
+    boxes = shapely.box(middle - a / 2, back, middle + a / 2, back + b)
+    shapely.prepare(room)
+    fits = shapely.contains(room, boxes) & (a > 7.0) & (b > 7.0)
+    if not fits.any():
+        return None
+    k = int(np.argmax(np.where(fits, a * b - 3.0 * back * a, -1e9)))
+    origin = np.array([middle[k] - a[k] / 2, back[k]])
+    local = draw_rings(float(a[k]), float(b[k]), rng) if wish.shaped else [rectangle_ring(0, 0, float(a[k]), float(b[k]))]
+    shape = shapely.orient_polygons(polygon_of([r + origin for r in local]))
+    rings = tuple(lot.world(shapely.get_coordinates(r)[:-1]) for r in (shape.exterior, *shape.interiors))
+    front = lot.world(np.array([[middle[k], back[k]], [middle[k], 0.0]]))
+    return rings, front
 
 
-def plan_building(
-    lot: shapely.Polygon, kind: Kind, storeys: int, palette: PaletteBuilder, rng: np.random.Generator
-) -> tuple[Style, shapely.Polygon, bool] | None:
-    """Choose a footprint and a style for a lot; None where nothing sensible fits."""
-    heading = street_heading(lot)
-    fit = largest_rectangle(lot.buffer(-1.6, join_style="mitre"), heading, rng.uniform(0.6, 0.9))
-    if fit is None:
-        return None
-    centre, length, width = fit
-    if min(length, width) < 6.5:
-        return None
-    length, width = min(length, rng.uniform(28.0, 60.0)), min(width, rng.uniform(13.0, 34.0))
-    pitched = kind is Kind.HOUSE and rng.uniform() < 0.55
-    footprint = draw_footprint(centre, length, width, heading, rng)
-    return draw_style(kind, pitched, palette, rng), footprint, pitched
+def outline_of(rings: tuple[np.ndarray, ...]) -> shapely.Polygon:
+    """Footprint of rings."""
+    return shapely.Polygon(rings[0], rings[1:])
+
+
+def rings_of(outline: shapely.Polygon) -> tuple[np.ndarray, ...]:
+    """Open rings of a polygon with the solid on their left."""
+    oriented = shapely.orient_polygons(outline)
+    return tuple(shapely.get_coordinates(r)[:-1] for r in (oriented.exterior, *oriented.interiors))

@@ -3,18 +3,26 @@
 from __future__ import annotations
 
 import numpy as np
+import shapely
 
 from scenegen.geometry.builder import GeometryBuilder
 from scenegen.geometry.relief import draw_relief, sample_height_field
 from scenegen.maps.city.districts import lay_out
-from scenegen.maps.city.greenery import build_trees
+from scenegen.maps.city.furniture import build_furniture
+from scenegen.maps.city.greenery import build_greenery
 from scenegen.maps.city.knobs import CityKnobs
+from scenegen.maps.city.outskirts import far_objects
+from scenegen.maps.city.park import plan_park
+from scenegen.maps.city.roof_gear import draw_roof_gear
 from scenegen.maps.city.shells import build_shells
 from scenegen.maps.city.streets import draw_streets
 from scenegen.maps.city.terrain import build_terrain
 from scenegen.maps.city.traffic import build_traffic
+from scenegen.maps.city.uses import Use
 from scenegen.materials.palette import PaletteBuilder
 from scenegen.world import World
+
+_MARGIN_M = 12.0
 
 
 def build_city(knobs: CityKnobs, rng: np.random.Generator) -> World:
@@ -24,22 +32,26 @@ def build_city(knobs: CityKnobs, rng: np.random.Generator) -> World:
     ----------
     knobs : CityKnobs
     rng : numpy.random.Generator
-        The only source of randomness; each subsystem gets a child of its own.
+        The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
     """
-    street_rng, relief_rng, palette_rng, layout_rng, ground_rng, shell_rng, car_rng, tree_rng = rng.spawn(8)
-    extent = rng.uniform(*knobs.extent_m)
-    palette, builder = PaletteBuilder(palette_rng), GeometryBuilder()
-    plan = draw_streets(extent, knobs.block_area_m2, rng.uniform(*knobs.street_bend_m), street_rng)
-    relief = draw_relief(relief_rng, relief_rng.uniform(*knobs.relief_m), (280.0, 900.0))
-    layout = lay_out(plan, knobs, relief, palette, builder, layout_rng)
-    builder.add(build_terrain(plan, layout, relief, palette, builder, ground_rng))
-    builder.add(build_shells(layout.buildings, shell_rng))
-    cars, car_shapes = build_traffic(plan, knobs, relief, palette, builder, car_rng)
-    builder.add(*cars)
-    trees, tree_count = build_trees(layout, knobs, relief, palette, builder, tree_rng)
-    builder.add(*trees)
+    own, streets, hills, skins, lots, parks_rng, ground, walls, gear_rng, cars_rng, posts_rng, green, far = rng.spawn(13)
+    extent = own.uniform(*knobs.extent_m)
+    palette, builder = PaletteBuilder(skins), GeometryBuilder()
+    palette.variants("asphalt_aged", 3)  # the fourth is its paint
+    plan = draw_streets(extent, knobs.block_area_m2, own.uniform(*knobs.street_bend_m), streets)
+    relief = draw_relief(hills, hills.uniform(*knobs.relief_m), (280.0, 900.0))
+    layout = lay_out(plan, knobs, relief, palette, builder, lots)
+    parks = {k: plan_park(b.yard, parks_rng) for k, b in enumerate(layout.blocks) if b.use is Use.PARK}
+    gear = draw_roof_gear(layout.buildings, gear_rng)
+
+    builder.add(build_terrain(plan, layout, parks, relief, palette, builder, ground))
+    builder.add(build_shells(layout.buildings, gear.plans, walls), *gear.parts)
+    cars, car_count = build_traffic(plan, layout, knobs, relief, palette, builder, cars_rng)
+    furniture, posts = build_furniture(plan, parks, relief, palette, builder, posts_rng)
+    trees, tree_count = build_greenery(layout, parks, posts, knobs, relief, palette, builder, green)
+    builder.add(*cars, *furniture, *trees, *far_objects(plan, relief, palette, builder, far))
     merged = builder.merge()
-    half = extent / 2
+    half = _inner_half(plan.outline)
     return World(
         map="city",
         mesh=merged.mesh,
@@ -49,12 +61,23 @@ def build_city(knobs: CityKnobs, rng: np.random.Generator) -> World:
         corner_site=merged.corner_site,
         sites=merged.sites,
         palette=palette.surfaces(),
-        ground=sample_height_field(relief, half + 60.0, 5.0),
+        ground=sample_height_field(relief, float(np.abs(plan.outline.bounds).max()) + 60.0, 5.0),
         flight_box_m=((-half, -half, 0.0), (half, half, knobs.flight_ceiling_m)),
         counts=(
+            ("streets", len(plan.streets)),
             ("blocks", len(layout.blocks)),
+            ("parks", len(parks)),
             ("buildings", len(layout.buildings)),
-            ("cars", len(car_shapes)),
+            ("cars", car_count),
+            ("lamps and signs", len(posts)),
             ("trees", tree_count),
         ),
     )
+
+
+def _inner_half(outline: shapely.Polygon) -> float:
+    """Half the side [m] of the largest upright square around the origin that keeps inside the detailed part."""
+    reach = np.linspace(50.0, 600.0, 276)
+    inner = outline.buffer(-_MARGIN_M)
+    fits = [inner.contains(shapely.box(-r, -r, r, r)) for r in reach]
+    return float(reach[int(np.argmin(fits)) - 1])

@@ -51,10 +51,10 @@ class CityKnobs(Section):
     yard_trees_per_1000_m2: Span = (2.0, 6.0)
     """Trees in yards."""
 
-    park_trees_per_1000_m2: Span = (6.0, 14.0)
+    park_trees_per_1000_m2: Span = (5.0, 10.0)
     """Trees in parks."""
 
-    parked_cars_per_100_m: Span = (3.0, 8.0)
+    parked_cars_per_100_m: Span = (4.0, 8.0)
     """Parked cars along 100 m of kerb."""
 
     moving_cars_per_100_m: Span = (0.3, 1.2)

@@ -1,17 +1,47 @@
-"""Blocks become lots: the inner part of a block is divided across its longer side until lots have a building's size."""
+"""Blocks become lots: divided across their longer side until lots have a building's size, and seen from their street."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import shapely
-from shapely.ops import split
+from jaxtyping import Float64
+from shapely.ops import polygonize, split
 
-_OPEN = {"join_style": "mitre"}
+
+@dataclass(frozen=True, eq=False)
+class Lot:
+    """A piece of a block.
+
+    Attributes
+    ----------
+    area : shapely.Polygon
+    corner : float64 (2,)
+        Left end of its frontage, seen from the lot towards the street [m].
+    heading_rad : float
+        Direction of the frontage; the lot lies to its left.
+    frontage_m : float
+        Length of the frontage; 0 for a lot behind others, without a street.
+    """
+
+    area: shapely.Polygon
+    corner: Float64[np.ndarray, "2"]
+    heading_rad: float
+    frontage_m: float
+
+    def local(self) -> shapely.Polygon:
+        """The lot in its own frame: frontage along +x from the origin, depth along +y."""
+        moved = shapely.affinity.translate(self.area, -self.corner[0], -self.corner[1])
+        return shapely.affinity.rotate(moved, -self.heading_rad, origin=(0, 0), use_radians=True)
+
+    def world(self, xy: Float64[np.ndarray, "points 2"]) -> Float64[np.ndarray, "points 2"]:
+        """Points of the lot's frame in the plan."""
+        c, s = np.cos(self.heading_rad), np.sin(self.heading_rad)
+        return xy @ np.array([[c, s], [-s, c]]) + self.corner
 
 
-def divide_lots(
-    yard: shapely.Polygon, lot_area_m2: tuple[float, float], rng: np.random.Generator
-) -> list[shapely.Polygon]:
+def divide_lots(yard: shapely.Polygon, lot_area_m2: tuple[float, float], rng: np.random.Generator) -> list[Lot]:
     """Divide the inner part of a block.
 
     Parameters
@@ -24,57 +54,78 @@ def divide_lots(
     """
     todo, done = [yard], []
     while todo:
-        lot = todo.pop(0)
-        if lot.area < 1.5 * rng.uniform(*lot_area_m2):
-            done.append(lot)
+        area = todo.pop(0)
+        if area.area < 1.5 * rng.uniform(*lot_area_m2):
+            done.append(area)
             continue
-        corners = shapely.get_coordinates(lot.minimum_rotated_rectangle)
+        corners = shapely.get_coordinates(area.minimum_rotated_rectangle)
         sides = np.diff(corners[:3], axis=0)
         lengths = np.linalg.norm(sides, axis=1)
         long = int(lengths[1] > lengths[0])
-        middle = shapely.get_coordinates(lot.centroid)[0] + sides[long] * rng.uniform(-0.12, 0.12)
+        middle = shapely.get_coordinates(area.centroid)[0] + sides[long] * rng.uniform(-0.12, 0.12)
         cut = shapely.LineString([middle - sides[1 - long] * 2, middle + sides[1 - long] * 2])
-        pieces = [p for p in split(lot, cut).geoms if p.area > 30.0]
+        pieces = [p for p in split(area, cut).geoms if p.area > 30.0]
         if len(pieces) < 2:
-            done.append(lot)
+            done.append(area)
         else:
             todo.extend(pieces)
-    return done
+    return [_seen_from_street(area, yard) for area in done]
 
 
-def largest_rectangle(area: shapely.Polygon, heading_rad: float, aspect: float) -> tuple[np.ndarray, float, float] | None:
-    """A large rectangle of given heading inside a polygon, by shrinking around a well inner point.
+def _seen_from_street(area: shapely.Polygon, yard: shapely.Polygon) -> Lot:
+    """Find the straight run of a lot's outline that lies on the block's edge."""
+    ring = shapely.get_coordinates(shapely.orient_polygons(area).exterior)
+    start, step = ring[:-1], np.diff(ring, axis=0)
+    middle = shapely.points(start + step / 2)
+    length = np.linalg.norm(step, axis=1)
+    on_edge = shapely.distance(middle, yard.exterior) < 0.05
+    if not on_edge.any():
+        k = int(np.argmax(length))
+        return Lot(area, start[k], float(np.arctan2(step[k, 1], step[k, 0])), 0.0)
+    heading = np.arctan2(step[:, 1], step[:, 0])
+    run = np.array([(length * on_edge * (np.cos(heading - h) > 0.97)).sum() for h in heading]) * on_edge
+    k = int(np.argmax(run))
+    along = np.array([np.cos(heading[k]), np.sin(heading[k])])
+    mine = on_edge & (np.cos(heading - heading[k]) > 0.97)
+    left = start[mine][int(np.argmin(start[mine] @ along))]
+    return Lot(area, left, float(heading[k]), float(run[k]))
 
-    Returns
-    -------
-    centre, length, width : float64 (2,), float, float
-        [m]; None if the polygon is too slim.
+
+def perimeter_sectors(
+    yard: shapely.Polygon, depth_m: float, frontage_m: tuple[float, float], rng: np.random.Generator
+) -> list[shapely.Polygon]:
+    """Cut the rim of a block into buildings that share party walls; corner buildings keep their corner.
+
+    Parameters
+    ----------
+    yard : shapely.Polygon
+        Street fronts.
+    depth_m : float
+        Depth of the rim.
+    frontage_m : (float, float)
+        Range of the distance between party walls.
+    rng : numpy.random.Generator
     """
-    if area.is_empty or area.area < 40.0:
-        return None
-    turned = shapely.affinity.rotate(area, -heading_rad, origin=(0, 0), use_radians=True)
-    x0, y0, x1, y1 = turned.bounds
-    best: tuple[float, float, float, float, float] | None = None
-    shapely.prepare(turned)
-    for fx in (0.5, 0.42, 0.58):
-        for fy in (0.5, 0.42, 0.58):
-            x, y = x0 + fx * (x1 - x0), y0 + fy * (y1 - y0)
-            for stretch in (1.0, aspect, 1.0 / aspect):
-                half = _grow(turned, x, y, (x1 - x0) / 2 * stretch, (y1 - y0) / 2)
-                if half is not None and (best is None or half[0] * half[1] > best[0]):
-                    best = (half[0] * half[1], x, y, half[0], half[1])
-    if best is None or min(best[3:]) < 3.0:
-        return None
-    c, s = np.cos(heading_rad), np.sin(heading_rad)
-    centre = np.array([c * best[1] - s * best[2], s * best[1] + c * best[2]])
-    return centre, 2 * best[3], 2 * best[4]
+    court = yard.buffer(-depth_m, join_style="mitre").simplify(0.3)
+    if court.geom_type != "Polygon" or court.area < 150.0:
+        return []
+    rim = shapely.Polygon(yard.exterior, [court.exterior])
+    front = shapely.get_coordinates(court.exterior)
+    cuts = []
+    for a, b in zip(front[:-1], front[1:], strict=True):
+        side, length = (b - a), float(np.linalg.norm(b - a))
+        count = int(length // rng.uniform(*frontage_m))
+        if length < 9.0:
+            continue
+        marks = (np.arange(count + 1) + rng.uniform(-0.12, 0.12, count + 1)) / max(count, 1)
+        marks = np.clip(marks, 3.0 / length, 1 - 3.0 / length) if count else np.array([0.5])
+        outward = np.array([side[1], -side[0]]) / length * _sign(front)
+        cuts += [shapely.LineString([p - 0.5 * outward, p + 1.6 * depth_m * outward]) for p in a + marks[:, None] * side]
+    noded = shapely.unary_union([rim.exterior, rim.interiors[0], *cuts], grid_size=0.001)
+    pieces = [p for p in polygonize(noded) if rim.contains(p.representative_point())]
+    return [shapely.Polygon(p.exterior) for p in pieces]
 
 
-def _grow(area: shapely.Polygon, x: float, y: float, dx: float, dy: float) -> tuple[float, float] | None:
-    """Largest of a ladder of scaled rectangles that fits."""
-    scales = np.linspace(1.0, 0.3, 15)
-    fits = shapely.contains(area, shapely.box(x - scales * dx, y - scales * dy, x + scales * dx, y + scales * dy))
-    if not fits.any():
-        return None
-    scale = scales[int(np.argmax(fits))]
-    return float(scale * dx), float(scale * dy)
+def _sign(ring: np.ndarray) -> float:
+    """+1 where the right side of the ring's direction is its outside."""
+    return 1.0 if shapely.LinearRing(ring).is_ccw else -1.0

@@ -1,4 +1,4 @@
-"""The ground plan of the city: far land, streets, sidewalks, yards, parks, and holes under buildings."""
+"""The ground plan of the city: far land, streets, sidewalks, yards, and holes under buildings."""
 
 from __future__ import annotations
 
@@ -11,50 +11,122 @@ from scenegen.geometry.ground import Region, drape
 from scenegen.geometry.part import Part
 from scenegen.geometry.planar import triangulate
 from scenegen.geometry.relief import WaveRelief
-from scenegen.geometry.scatter import graded_points
-from scenegen.maps.city.districts import Layout, Use
+from scenegen.geometry.scatter import contact_points, graded_points
+from scenegen.maps.city.districts import Block, Layout
+from scenegen.maps.city.markings import marking_quads
+from scenegen.maps.city.outskirts import FAR_M, far_regions
+from scenegen.maps.city.park import ParkPlan, park_regions
 from scenegen.maps.city.streets import StreetPlan
+from scenegen.maps.city.uses import Use
 from scenegen.materials.palette import PaletteBuilder
 
 KERB_M = 0.12
-FAR_M = 2600.0
+GROUND_SPACING_M = 2.4
+_LINE_SPACING_M = 2.4
+_CONTACT_SPACING_M = 1.2
 _TUCK_M = 0.01
 
 
 def build_terrain(
     plan: StreetPlan,
     layout: Layout,
+    parks: dict[int, ParkPlan],
     relief: WaveRelief,
     palette: PaletteBuilder,
     builder: GeometryBuilder,
     rng: np.random.Generator,
 ) -> Part:
-    """All ground, from the middle of the city to the far edge."""
-    road, land = builder.new_objects(), builder.new_objects()
-    asphalt = palette.pick("asphalt_aged", rng)
-    far = shapely.box(-FAR_M, -FAR_M, FAR_M, FAR_M)
-    regions = [
-        Region(far, palette.pick("grass_dry", rng), int(Semantic.GRASS), land),
-        Region(plan.outline, asphalt, int(Semantic.ROAD), road),
-    ]
-    for block in layout.blocks:
-        sidewalk = builder.new_objects()
-        pavement = palette.pick("concrete_pavement", rng)
-        regions.append(Region(block.outline, pavement, int(Semantic.SIDEWALK), sidewalk, KERB_M))
-        surface, semantic = _yard_surface(block.use, palette, rng)
-        regions.append(Region(block.yard, surface, semantic, builder.new_objects(), KERB_M))
+    """All ground, from the middle of the city to the far edge.
+
+    Parameters
+    ----------
+    plan, layout, parks
+        What was drawn so far; parks by block index.
+    relief : WaveRelief
+    palette, builder
+        Of this world.
+    rng : numpy.random.Generator
+    """
+    regions = far_regions(plan, palette, builder, rng)
+    regions += _streets(plan, palette, builder, rng)
+    for k, block in enumerate(layout.blocks):
+        regions += _block_regions(block, layout, palette, builder, rng)
+        if k in parks:
+            regions += park_regions(parks[k], relief, palette, builder, rng)
+    regions += _paths(layout, palette, builder, rng)
     holes = shapely.union_all([b.footprint for b in layout.buildings]).buffer(-_TUCK_M, join_style="mitre")
-    regions += [Region(p, asphalt, 0, road, hole=True) for p in getattr(holes, "geoms", [holes])]
+    solid = list(getattr(holes, "geoms", [holes]))
+    regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in solid]
+    half = float(np.abs(plan.outline.bounds).max())
+    points = np.concatenate(
+        [contact_points(solid, _CONTACT_SPACING_M, 0.9), graded_points(plan.outline.buffer(3.0), FAR_M, GROUND_SPACING_M, rng)]
+    )
     outlines = [r.outline for r in regions]
-    half = np.sqrt(plan.outline.area) / 2
-    points = graded_points(half + 10.0, FAR_M, 2.4, rng)
-    return drape(triangulate(outlines, points, 2.0, (half * 1.2, 0.06)), regions, relief)
+    spacing = np.array([_CONTACT_SPACING_M if r.hole else _LINE_SPACING_M for r in regions])
+    return drape(triangulate(outlines, points, spacing, (half * 1.05, 0.07)), regions, relief)
 
 
-def _yard_surface(use: Use, palette: PaletteBuilder, rng: np.random.Generator) -> tuple[int, int]:
-    if use is Use.INDUSTRY:
-        return palette.pick("asphalt_aged", rng), int(Semantic.ROAD)
-    if use is Use.OFFICES:
-        return palette.pick("concrete_pavement", rng), int(Semantic.SIDEWALK)
-    lawn = "grass_watered" if rng.uniform() < 0.6 else "grass_dry"
-    return palette.pick(lawn, rng), int(Semantic.GRASS)
+def _streets(
+    plan: StreetPlan, palette: PaletteBuilder, builder: GeometryBuilder, rng: np.random.Generator
+) -> list[Region]:
+    road = builder.new_objects()
+    paint = palette.special("asphalt_aged", "paint", solar_absorptance=0.55)
+    marking = builder.new_objects()
+    regions = [Region(plan.outline, palette.pick("asphalt_aged", rng), int(Semantic.ROAD), road)]
+    quads = shapely.polygons(marking_quads(plan, rng))
+    return regions + [Region(q, paint, int(Semantic.ROAD_MARKING), marking) for q in quads]
+
+
+def _block_regions(
+    block: Block, layout: Layout, palette: PaletteBuilder, builder: GeometryBuilder, rng: np.random.Generator
+) -> list[Region]:
+    pavement = palette.pick("concrete_pavement", rng)
+    regions = [Region(block.outline, pavement, int(Semantic.SIDEWALK), builder.new_objects(), KERB_M)]
+    lawn = palette.pick("grass_watered" if rng.uniform() < 0.65 else "grass_dry", rng)
+    asphalt = palette.pick("asphalt_aged", rng)
+    ground, ground_of_cars = builder.new_objects(), builder.new_objects()
+    surface, semantic = {
+        Use.INDUSTRY: (asphalt, Semantic.ROAD),
+        Use.OFFICES: (pavement, Semantic.SIDEWALK),
+        Use.PERIMETER: (pavement, Semantic.SIDEWALK),
+    }.get(block.use, (lawn, Semantic.GRASS))
+    # Terraces stand on the edge of the yard: a second line there would only split theirs.
+    inner = block.yard.buffer(-6.0, join_style="mitre") if block.use is Use.PERIMETER else block.yard
+    regions.append(Region(inner, surface, int(semantic), ground, KERB_M))
+    if block.use is Use.PERIMETER:
+        court = block.yard.buffer(-17.0, join_style="mitre")
+        if court.geom_type == "Polygon" and court.area > 120.0:
+            regions.append(Region(court, lawn, int(Semantic.GRASS), builder.new_objects(), KERB_M))
+    for lot in block.car_parks:
+        bays = lot.area.buffer(-1.0, join_style="mitre")
+        if bays.geom_type == "Polygon" and block.use is not Use.INDUSTRY:
+            regions.append(Region(bays, asphalt, int(Semantic.ROAD), ground_of_cars, KERB_M))
+    if block.use is Use.OFFICES:
+        for lot in block.open_lots:
+            if lot in block.car_parks:
+                continue
+            green = lot.area.buffer(-3.5, join_style="mitre").buffer(1.5)
+            if green.geom_type == "Polygon" and green.area > 60.0 and rng.uniform() < 0.6:
+                regions.append(Region(green.simplify(0.3), lawn, int(Semantic.GRASS), builder.new_objects(), KERB_M))
+    return regions
+
+
+def _paths(
+    layout: Layout, palette: PaletteBuilder, builder: GeometryBuilder, rng: np.random.Generator
+) -> list[Region]:
+    """Paved paths from the sidewalk to the doors of detached buildings on lawns."""
+    pavement = palette.pick("concrete_pavement", rng)
+    first = builder.new_objects()
+    regions = []
+    for building in layout.buildings:
+        if building.front is None:
+            continue
+        door, kerb = building.front
+        length = float(np.linalg.norm(door - kerb))
+        if length < 1.0:
+            continue
+        step = (door - kerb) / length
+        line = shapely.LineString([kerb - 0.6 * step, door + 0.1 * step])
+        strip = line.buffer(rng.uniform(0.7, 1.4), cap_style="flat")
+        regions.append(Region(strip, pavement, int(Semantic.SIDEWALK), first, KERB_M))
+    return regions

@@ -1,4 +1,4 @@
-"""Cars: parked along kerbs and driving in the lanes."""
+"""Cars: parked along kerbs and in car parks, driving in the lanes."""
 
 from __future__ import annotations
 
@@ -11,43 +11,47 @@ from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along, clear_of, first_come, rectangles
 from scenegen.geometry.relief import WaveRelief
 from scenegen.geometry.template import place
+from scenegen.maps.city.districts import Layout
 from scenegen.maps.city.knobs import CityKnobs
-from scenegen.maps.city.streets import StreetPlan
+from scenegen.maps.city.lots import Lot
+from scenegen.maps.city.streets import Rank, StreetPlan
 from scenegen.materials.palette import PaletteBuilder
 
 _PAINTS = ("car_paint_black", "car_paint_white", "car_paint_silver", "car_paint_silver")
-_JUNCTION_M = 7.0
+_KERB_M = 0.12
+_PITCH_M = 5.7
+
+# Lateral places to the right of the centre line [m]: parked, driving.
+_PARKED = {Rank.ARTERIAL: (), Rank.COLLECTOR: (4.5,), Rank.SIDE: (3.5,)}
+_DRIVING = {Rank.ARTERIAL: (1.75, 5.3), Rank.COLLECTOR: (1.75,), Rank.SIDE: (1.3,)}
 
 
 def build_traffic(
     plan: StreetPlan,
+    layout: Layout,
     knobs: CityKnobs,
     relief: WaveRelief,
     palette: PaletteBuilder,
     builder: GeometryBuilder,
     rng: np.random.Generator,
-) -> tuple[list[Part], np.ndarray]:
-    """Cars as parts (one per body style) and their rectangles in the plan."""
-    centre, heading = _spots(plan, knobs, rng)
-    shapes = rectangles(centre, np.full(len(centre), LENGTH_M + 0.8), np.full(len(centre), WIDTH_M + 0.2), heading)
-    keep = clear_of(shapes, np.asarray(plan.blocks, dtype=object), 0.1) & first_come(shapes)
-    centre, heading, shapes = centre[keep], heading[keep], shapes[keep]
-    first = builder.new_objects(len(centre))
-    body = rng.choice(len(BODIES), len(centre), p=[0.36, 0.2, 0.32, 0.12])
-    paint = np.array([palette.pick(_PAINTS[int(k)], rng) for k in rng.integers(0, 4, len(centre))])
-    skins = np.column_stack(
-        [paint, np.full(len(paint), palette.pick("window_glass", rng)), np.full(len(paint), palette.only("tyre_rubber"))]
-    )
-    slope = slopes(relief, centre)
-    position = np.column_stack([centre, relief(centre)])
+) -> tuple[list[Part], int]:
+    """Cars as parts, one per body style, and their number."""
+    spots, lift = _spots(plan, layout, knobs, rng)
+    count = len(spots)
+    first = builder.new_objects(count)
+    body = rng.choice(len(BODIES), count, p=[0.36, 0.2, 0.32, 0.12])
+    paint = np.array([palette.pick(_PAINTS[int(k)], rng) for k in rng.integers(0, 4, count)])
+    glass, rubber = palette.pick("window_glass", rng), palette.only("tyre_rubber")
+    skins = np.column_stack([paint, np.full(count, glass), np.full(count, rubber)])
+    slope = slopes(relief, spots[:, :2])
+    position = np.column_stack([spots[:, :2], relief(spots[:, :2]) + lift])
+    size = rng.uniform(0.95, 1.05, count)
     parts = []
     for k, name in enumerate(BODIES):
         mine = np.flatnonzero(body == k)
-        scale = rng.uniform(0.96, 1.05, (len(mine), 1)) * np.ones(3)
-        parts.append(
-            place(car(name), position[mine], heading[mine], scale, skins[mine], first + mine, slope[mine])
-        )
-    return parts, shapes
+        scale = size[mine, None] * np.ones(3)
+        parts.append(place(car(name), position[mine], spots[mine, 2], scale, skins[mine], first + mine, slope[mine]))
+    return parts, count
 
 
 def slopes(relief: WaveRelief, xy: np.ndarray) -> np.ndarray:
@@ -57,22 +61,56 @@ def slopes(relief: WaveRelief, xy: np.ndarray) -> np.ndarray:
     return np.column_stack([relief(xy + d) - relief(xy - d) for d in (east, north)]) / (2 * step)
 
 
-def _spots(plan: StreetPlan, knobs: CityKnobs, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Candidate places: both kerbs and both lanes of every street, away from junctions."""
+def _spots(
+    plan: StreetPlan, layout: Layout, knobs: CityKnobs, rng: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray]:
+    """Places (x, y, heading) that do not overlap, and the height of the ground there above the relief."""
+    street = _in_streets(plan, knobs, rng)
+    lots = [lot for block in layout.blocks for lot in block.car_parks]
+    park = np.concatenate([np.zeros((0, 3)), *(_in_car_park(lot, rng) for lot in lots)])
+    spots = np.concatenate([street, park])
+    lift = np.repeat([0.0, _KERB_M], [len(street), len(park)])
+    shapes = rectangles(
+        spots[:, :2], np.full(len(spots), LENGTH_M + 0.5), np.full(len(spots), WIDTH_M + 0.3), spots[:, 2]
+    )
+    keep = first_come(shapes)
+    footprints = np.array([b.footprint for b in layout.buildings], dtype=object)
+    keep &= clear_of(shapes, footprints, 0.3)
+    on_road = lift == 0.0
+    keep[on_road] &= clear_of(shapes[on_road], np.asarray(plan.blocks, dtype=object), 0.02)
+    return spots[keep], lift[keep]
+
+
+def _in_streets(plan: StreetPlan, knobs: CityKnobs, rng: np.random.Generator) -> np.ndarray:
+    """Both kerbs and both directions of every link."""
     parked, moving = rng.uniform(*knobs.parked_cars_per_100_m), rng.uniform(*knobs.moving_cars_per_100_m)
-    lines = np.array([shapely.LineString(s.line) for s in plan.streets], dtype=object)
-    places, headings = [], []
-    for k, street in enumerate(plan.streets):
-        other = np.delete(lines, k)
-        reach = np.delete(np.array([s.width_m / 2 for s in plan.streets]), k)
-        for rate, offset in ((parked, street.width_m / 2 - 1.25), (moving, street.width_m / 2 - 3.4)):
+    rows = [np.zeros((0, 3))]
+    for link in plan.links:
+        street = plan.streets[link.street]
+        lanes = [(parked, r) for r in _PARKED[street.rank]] + [(moving, r) for r in _DRIVING[street.rank]]
+        for rate, right in lanes:
             for side in (1.0, -1.0):
-                spots = np.arange(6.0, lines[k].length - 6.0, 5.6)
-                spots = spots[rng.uniform(size=len(spots)) < rate * 0.056] + 0.0
-                spots = spots + rng.uniform(-0.2, 0.2, len(spots))
-                xy, heading = along(street.line, spots, np.full(len(spots), side * offset))
-                distance = shapely.distance(shapely.points(xy)[:, None], other[None, :])
-                free = (distance > reach[None, :] + _JUNCTION_M).all(axis=1)
-                places.append(xy[free])
-                headings.append(heading[free] + (0.0 if side > 0 else np.pi))
-    return np.concatenate(places), np.concatenate(headings)
+                marks = np.arange(link.start_m + 8.0, link.end_m - 8.0, _PITCH_M)
+                marks = marks[rng.uniform(size=len(marks)) < rate * _PITCH_M / 100]
+                marks = marks + rng.uniform(-0.3, 0.3, len(marks))
+                xy, heading = along(street.line, marks, np.full(len(marks), side * right))
+                heading = heading + rng.normal(0.0, 0.015, len(marks)) + (0.0 if side > 0 else np.pi)
+                rows.append(np.column_stack([xy, heading]))
+    return np.concatenate(rows)
+
+
+def _in_car_park(lot: Lot, rng: np.random.Generator) -> np.ndarray:
+    """Rows of bays across the lot, partly taken."""
+    room = lot.local().buffer(-1.2, join_style="mitre")
+    if room.is_empty:
+        return np.zeros((0, 3))
+    x0, y0, x1, y1 = room.bounds
+    rows = np.arange(y0 + 2.7, y1, 8.2)
+    x, y = (g.ravel() for g in np.meshgrid(np.arange(x0 + 1.4, x1, 2.7), rows))
+    taken = rng.uniform(size=len(x)) < rng.uniform(0.25, 0.8)
+    x, y = x[taken], y[taken]
+    heading = np.where(rng.uniform(size=len(x)) < 0.5, 0.5, 1.5) * np.pi
+    shapes = rectangles(np.column_stack([x, y]), np.full(len(x), 4.8), np.full(len(x), 2.1), heading)
+    fits = shapely.contains(room, shapes) if len(x) else np.zeros(0, bool)
+    plan = lot.world(np.column_stack([x, y])[fits])
+    return np.column_stack([plan, heading[fits] + lot.heading_rad + rng.normal(0.0, 0.02, fits.sum())])

@@ -1,0 +1,144 @@
+"""From a lot or a sector of a perimeter block to a building: kind, size, storeys, roof, tiers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from scenegen.geometry.builder import GeometryBuilder
+from scenegen.geometry.relief import WaveRelief
+from scenegen.maps.city.buildings import Building, Volume, Wish, fit_footprint, outline_of, rings_of
+from scenegen.maps.city.knobs import CityKnobs
+from scenegen.maps.city.lots import Lot
+from scenegen.maps.city.styles import Kind, Roof, draw_style
+from scenegen.maps.city.uses import Use
+from scenegen.materials.palette import PaletteBuilder
+
+_BELOW_GROUND_M = 0.8
+_KERB_AND_STEP_M = 0.18
+
+_WISHES = {
+    Kind.HOUSE: Wish((9.0, 15.0), (8.5, 11.5), (1.5, 5.0), 1.3, shaped=False),
+    Kind.APARTMENTS: Wish((18.0, 46.0), (11.0, 17.0), (1.0, 7.0), 2.2, shaped=True),
+    Kind.OFFICE: Wish((22.0, 52.0), (16.0, 38.0), (1.2, 4.5), 2.0, shaped=True),
+    Kind.TOWER: Wish((24.0, 44.0), (22.0, 36.0), (1.2, 5.0), 2.0, shaped=False),
+    Kind.SHED: Wish((24.0, 60.0), (18.0, 42.0), (4.0, 10.0), 2.5, shaped=False),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Constructor:
+    """What all buildings of a world have in common.
+
+    Attributes
+    ----------
+    knobs : CityKnobs
+    relief : WaveRelief
+    palette : PaletteBuilder
+    builder : GeometryBuilder
+        Hands out instance ids.
+    tower_share, terrace_storeys : float
+        Of this world: share of towers among office and estate lots; mean storeys of perimeter blocks.
+    """
+
+    knobs: CityKnobs
+    relief: WaveRelief
+    palette: PaletteBuilder
+    builder: GeometryBuilder
+    tower_share: float
+    terrace_storeys: float
+
+    @staticmethod
+    def draw(
+        knobs: CityKnobs,
+        relief: WaveRelief,
+        palette: PaletteBuilder,
+        builder: GeometryBuilder,
+        rng: np.random.Generator,
+    ) -> Constructor:
+        """Draw the world's own values from the knobs."""
+        low, high = knobs.storeys
+        return Constructor(
+            knobs, relief, palette, builder, rng.uniform(*knobs.tower_share), rng.uniform(0.5 * (low + high), high)
+        )
+
+    def on_lot(self, lot: Lot, use: Use, rng: np.random.Generator) -> Building | None:
+        """A detached building, or None where nothing sensible fits."""
+        kind = self._kind(use, rng)
+        fit = fit_footprint(lot, _WISHES[kind], rng)
+        if fit is None and kind in (Kind.TOWER, Kind.OFFICE):
+            kind = Kind.APARTMENTS
+            fit = fit_footprint(lot, _WISHES[kind], rng)
+        if fit is None:
+            return None
+        rings, front = fit
+        form = _form(kind, rings, rng)
+        style = draw_style(kind, form, self.palette, rng)
+        storeys = self._storeys(kind, rng)
+        floor, depth = self._stand(rings)
+        volumes: tuple[Volume, ...] = (Volume(rings, floor, storeys, depth, form),)
+        if kind is Kind.TOWER:
+            volumes = self._tower(volumes[0], style.first_storey_m + style.storey_m, rng)
+        return Building(kind, self.builder.new_objects(), style, volumes, outline_of(rings), front)
+
+    def terrace(self, sector: shapely.Polygon, rng: np.random.Generator) -> Building:
+        """A building of a perimeter block, wall to wall with its neighbours."""
+        form = Roof.MANSARD if rng.uniform() < 0.45 else Roof.FLAT
+        style = draw_style(Kind.TERRACE, form, self.palette, rng)
+        storeys = max(2, round(rng.normal(self.terrace_storeys, 0.9)) - (form is Roof.MANSARD))
+        rings = rings_of(sector)
+        floor, depth = self._stand(rings)
+        volume = Volume(rings, floor, storeys, depth, form)
+        return Building(Kind.TERRACE, self.builder.new_objects(), style, (volume,), sector)
+
+    def _kind(self, use: Use, rng: np.random.Generator) -> Kind:
+        choice = rng.uniform()
+        if use is Use.INDUSTRY:
+            return Kind.SHED if choice < 0.8 else Kind.OFFICE
+        if use is Use.OFFICES:
+            return Kind.TOWER if choice < 4 * self.tower_share else Kind.OFFICE
+        if use is Use.ESTATE:
+            return Kind.TOWER if choice < self.tower_share else Kind.APARTMENTS
+        return Kind.HOUSE if choice < 0.88 else Kind.APARTMENTS
+
+    def _storeys(self, kind: Kind, rng: np.random.Generator) -> int:
+        low, high = self.knobs.storeys
+        if kind is Kind.SHED:
+            return 1
+        if kind is Kind.HOUSE:
+            return int(rng.choice([1, 2, 2, 3]))
+        return max(2, round(rng.uniform(low, high) + (1.0 if kind is Kind.OFFICE else 0.0)))
+
+    def _tower(self, base: Volume, podium_m: float, rng: np.random.Generator) -> tuple[Volume, ...]:
+        """Split a footprint into a podium of two storeys and a slimmer shaft."""
+        storeys = round(rng.uniform(*self.knobs.tower_storeys))
+        footprint = outline_of(base.rings)
+        core = footprint.buffer(-rng.uniform(2.5, 4.5), join_style="mitre")
+        if core.geom_type != "Polygon" or core.area < 150.0 or rng.uniform() < 0.2:
+            return (Volume(base.rings, base.floor_m, storeys, base.foundation_m, Roof.FLAT),)
+        podium = Volume(base.rings, base.floor_m, 2, base.foundation_m, Roof.FLAT, covered=core)
+        shaft = Volume(rings_of(core), base.floor_m + podium_m, storeys - 2, 0.05, Roof.FLAT)
+        return podium, shaft
+
+    def _stand(self, rings: tuple[np.ndarray, ...]) -> tuple[float, float]:
+        """Floor height just above the highest ground at the walls, and the depth of the foundation below it."""
+        outline = shapely.segmentize(shapely.Polygon(rings[0]).exterior, 4.0)
+        ground = self.relief(shapely.get_coordinates(outline))
+        floor = float(ground.max()) + _KERB_AND_STEP_M
+        return floor, floor - float(ground.min()) + _BELOW_GROUND_M
+
+
+def _form(kind: Kind, rings: tuple[np.ndarray, ...], rng: np.random.Generator) -> Roof:
+    """Pitched roofs on plain houses and some sheds, flat ones elsewhere."""
+    choice = rng.uniform()
+    if len(rings) > 1 or len(rings[0]) != 4:
+        return Roof.FLAT
+    if kind is Kind.HOUSE:
+        return Roof.GABLE if choice < 0.55 else Roof.HIP if choice < 0.8 else Roof.FLAT
+    if kind is Kind.SHED:
+        return Roof.GABLE if choice < 0.55 else Roof.FLAT
+    if kind is Kind.APARTMENTS:
+        return Roof.GABLE if choice < 0.2 else Roof.HIP if choice < 0.4 else Roof.FLAT
+    return Roof.FLAT

@@ -1,0 +1,114 @@
+"""Street furniture: lamp posts, traffic lights, benches."""
+
+from __future__ import annotations
+
+import numpy as np
+import shapely
+
+from scenegen.classes import Semantic
+from scenegen.geometry.builder import GeometryBuilder
+from scenegen.geometry.modelling import Modeller
+from scenegen.geometry.part import Part
+from scenegen.geometry.placement import along
+from scenegen.geometry.relief import WaveRelief
+from scenegen.geometry.template import Template, place
+from scenegen.maps.city.park import ParkPlan
+from scenegen.maps.city.streets import Rank, StreetPlan
+from scenegen.materials.palette import PaletteBuilder
+
+_KERB_M = 0.12
+_FROM_KERB_M = 0.6
+
+
+def _lamp() -> Template:
+    """A post of eight metres with an arm over the street (+x)."""
+    model = Modeller()
+    model.tube(np.array([0, 0, -0.1]), np.array([0, 0, 0.9]), 0.12, 0.11, 0, Semantic.POLE, sides=6, sites=2)
+    model.tube(np.array([0, 0, 0.9]), np.array([0, 0, 7.6]), 0.08, 0.055, 0, Semantic.POLE, sides=6, sites=2)
+    model.tube(np.array([0, 0, 7.55]), np.array([1.7, 0, 8.0]), 0.05, 0.035, 0, Semantic.POLE, sides=5)
+    model.box((1.3, -0.17, 7.95), (2.1, 0.17, 8.09), 0, Semantic.POLE)
+    model.quads(np.array([[[1.3, -0.17, 7.95], [1.3, 0.17, 7.95], [2.1, 0.17, 7.95], [2.1, -0.17, 7.95]]]), 1, Semantic.POLE)
+    return model.finish()
+
+
+def _traffic_light() -> Template:
+    model = Modeller()
+    model.tube(np.array([0, 0, -0.1]), np.array([0, 0, 3.4]), 0.07, 0.06, 0, Semantic.POLE, sides=6, sites=2)
+    model.box((0.05, -0.16, 2.5), (0.3, 0.16, 3.45), 0, Semantic.TRAFFIC_LIGHT)
+    return model.finish()
+
+
+def _sign() -> Template:
+    model = Modeller()
+    model.tube(np.array([0, 0, -0.1]), np.array([0, 0, 2.7]), 0.035, 0.035, 0, Semantic.POLE, sides=5)
+    model.box((0.035, -0.35, 2.0), (0.06, 0.35, 2.7), 0, Semantic.SIGN)
+    return model.finish()
+
+
+def _bench() -> Template:
+    """Seat and back of wood on iron legs, looking along -y."""
+    model = Modeller()
+    model.box((-0.85, -0.25, 0.4), (0.85, 0.2, 0.46), 1, Semantic.STREET_FURNITURE)
+    model.box((-0.85, 0.2, 0.45), (0.85, 0.26, 0.9), 1, Semantic.STREET_FURNITURE)
+    for x in (-0.7, 0.65):
+        model.box((x, -0.22, -0.05), (x + 0.06, 0.2, 0.4), 0, Semantic.STREET_FURNITURE)
+    return model.finish()
+
+
+def build_furniture(
+    plan: StreetPlan,
+    parks: dict[int, ParkPlan],
+    relief: WaveRelief,
+    palette: PaletteBuilder,
+    builder: GeometryBuilder,
+    rng: np.random.Generator,
+) -> tuple[list[Part], np.ndarray]:
+    """All street furniture and the places of the posts (for trees to keep clear of)."""
+    metal, glass = palette.pick("metal_galv_weathered", rng), palette.pick("window_glass", rng)
+    wood = palette.pick("wood_siding", rng)
+    lamps, lights, signs = _posts(plan, rng)
+    benches = np.concatenate([np.zeros((0, 3)), *(p.benches for p in parks.values())])
+    parts = []
+    for template, rows, second in (
+        (_lamp(), lamps, glass),
+        (_traffic_light(), lights, glass),
+        (_sign(), signs, glass),
+        (_bench(), benches, wood),
+    ):
+        count = len(rows)
+        position = np.column_stack([rows[:, :2], relief(rows[:, :2]) + _KERB_M])
+        skins = np.tile([[metal, second]], (count, 1))
+        owner = builder.new_objects(count) + np.arange(count)
+        parts.append(place(template, position, rows[:, 2], np.ones((count, 3)), skins, owner))
+    return parts, np.concatenate([lamps[:, :2], lights[:, :2], signs[:, :2]])
+
+
+def _posts(plan: StreetPlan, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Places and headings (x, y, rad) of lamps along links, lights at the ends of arterials, signs at others."""
+    lamps, lights, signs = [], [], []
+    blocks = shapely.STRtree(np.asarray(plan.blocks, dtype=object))
+
+    def post(line: np.ndarray, distance: float, right: float) -> list[float] | None:
+        xy, heading = along(line, np.array([distance]), np.array([right]))
+        if not len(blocks.query(shapely.Point(xy[0]), predicate="within")):
+            return None
+        return [*xy[0], float(heading[0]) + (0.5 * np.pi if right > 0 else -0.5 * np.pi)]
+
+    for link in plan.links:
+        street = plan.streets[link.street]
+        edge = street.width_m / 2 + _FROM_KERB_M
+        pitch = 26.0 if street.rank is Rank.ARTERIAL else 31.0
+        marks = np.arange(link.start_m + 4.0, link.end_m - 2.0, pitch)
+        sides = np.where((np.arange(len(marks)) + int(rng.integers(2))) % 2 == 0, 1.0, -1.0)
+        lamps += [post(street.line, float(m), float(s) * edge) for m, s in zip(marks, sides, strict=True)]
+        ends = ((link.end_m - 0.5, 1.0), (link.start_m + 0.5, -1.0))
+        rows = [post(street.line, at, side * edge) for at, side in ends]
+        for row in rows:
+            if row is not None:
+                row[2] += 0.5 * np.pi
+        (lights if street.rank is Rank.ARTERIAL else signs).extend(rows)
+
+    def table(rows: list[list[float] | None]) -> np.ndarray:
+        return np.array([r for r in rows if r is not None], np.float64).reshape(-1, 3)
+
+    return table(lamps), table(lights), table(signs)

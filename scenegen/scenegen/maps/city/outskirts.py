@@ -1,0 +1,134 @@
+"""Beyond the detailed city: fields, roads that lead out, simple buildings and tree masses up to the horizon."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import shapely
+
+from scenegen.classes import Semantic
+from scenegen.geometry.builder import GeometryBuilder
+from scenegen.geometry.ground import Region
+from scenegen.geometry.modelling import Modeller
+from scenegen.geometry.part import Part
+from scenegen.geometry.placement import clear_of, first_come, rectangles
+from scenegen.geometry.relief import WaveRelief
+from scenegen.geometry.template import place
+from scenegen.geometry.trees import grove
+from scenegen.maps.city.streets import StreetPlan
+from scenegen.materials.palette import PaletteBuilder
+
+FAR_M = 2600.0
+_ROAD_HALF_M = 5.0
+_COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "grass_watered")
+
+
+def road_lines(plan: StreetPlan) -> np.ndarray:
+    """Centre lines of the roads that leave the city."""
+    lines = []
+    for start, direction in plan.exits:
+        t = np.linspace(-3.0, 2.0 * FAR_M, 40)
+        across = np.array([-direction[1], direction[0]])
+        sway = 60.0 * (1 - np.cos(t / 420.0)) * np.sign(start @ across + 1e-9)
+        lines.append(shapely.LineString(start + t[:, None] * direction + sway[:, None] * across))
+    return np.array(lines, dtype=object)
+
+
+def far_regions(
+    plan: StreetPlan, palette: PaletteBuilder, builder: GeometryBuilder, rng: np.random.Generator
+) -> list[Region]:
+    """Land around the city; the first region covers everything."""
+    land, fields, road = builder.new_objects(), builder.new_objects(), builder.new_objects()
+    edge = shapely.box(-FAR_M, -FAR_M, FAR_M, FAR_M)
+    regions = [Region(edge, palette.pick("grass_dry", rng), int(Semantic.GRASS), land)]
+    half = np.abs(plan.outline.bounds).max()
+    count = 60
+    angle, reach = rng.uniform(0, 2 * np.pi, count), half + 1800.0 * rng.uniform(0.02, 1.0, count)
+    centre = np.column_stack([np.cos(angle), np.sin(angle)]) * reach[:, None]
+    length = rng.uniform(60.0, 130.0, count) * (reach / half)
+    shapes = rectangles(centre, length, length * rng.uniform(0.4, 0.9, count), rng.uniform(0, np.pi, count))
+    roads = shapely.buffer(road_lines(plan), _ROAD_HALF_M, cap_style="flat")
+    city = np.array([plan.outline.buffer(25.0), *shapely.buffer(roads, 4.0)], dtype=object)
+    keep = clear_of(shapes, city) & first_come(shapes) & shapely.within(shapes, edge.buffer(-50.0))
+    for shape, k in zip(shapes[keep], rng.integers(0, len(_COVERS), keep.sum()), strict=True):
+        name = _COVERS[int(k)]
+        semantic = Semantic.SOIL if name.startswith("soil") else Semantic.GRASS
+        regions.append(Region(shape, palette.pick(name, rng), int(semantic), fields))
+    asphalt = palette.pick("asphalt_aged", rng)
+    inside = edge.buffer(-20.0)
+    for shape in roads:
+        for piece in shapely.get_parts(shapely.intersection(shape, inside)):
+            regions.append(Region(piece, asphalt, int(Semantic.ROAD), road))
+    return regions
+
+
+def far_objects(
+    plan: StreetPlan,
+    relief: WaveRelief,
+    palette: PaletteBuilder,
+    builder: GeometryBuilder,
+    rng: np.random.Generator,
+) -> list[Part]:
+    """Plain buildings and groves, denser towards the city; they thin out with distance."""
+    half = float(np.abs(plan.outline.bounds).max())
+    count = 1500
+    angle = rng.uniform(0.0, 2 * np.pi, count)
+    reach = half * 0.85 + 1900.0 * rng.uniform(0.0, 1.0, count) ** 1.7
+    centre = np.column_stack([np.cos(angle), np.sin(angle)]) * reach[:, None]
+    heading = 0.5 * np.pi * np.round(rng.uniform(0, 1, count)) + 0.6 * np.sin(2 * angle) + rng.normal(0, 0.06, count)
+    built = rng.uniform(size=count) < 0.55
+    length = np.where(built, rng.uniform(11.0, 34.0, count), rng.uniform(14.0, 40.0, count))
+    width = np.where(built, rng.uniform(9.0, 18.0, count), length * rng.uniform(0.5, 1.0, count))
+    shapes = rectangles(centre, length + 5.0, width + 5.0, heading)
+    roads = shapely.buffer(road_lines(plan), _ROAD_HALF_M + 2.0, cap_style="flat")
+    taken = np.array([plan.outline.buffer(8.0), *roads], dtype=object)
+    keep = clear_of(shapes, taken) & first_come(shapes)
+    size = np.column_stack([length, width, np.where(rng.uniform(size=count) < 0.08, 28.0, rng.uniform(5.0, 15.0, count))])
+    return [
+        _plain_buildings(centre[keep & built], size[keep & built], heading[keep & built], relief, palette, builder, rng),
+        _groves(centre[keep & ~built], size[keep & ~built], relief, palette, builder, rng),
+    ]
+
+
+def _plain_buildings(
+    centre: np.ndarray,
+    size: np.ndarray,
+    heading: np.ndarray,
+    relief: WaveRelief,
+    palette: PaletteBuilder,
+    builder: GeometryBuilder,
+    rng: np.random.Generator,
+) -> Part:
+    names = ("stucco_render", "brick_red", "concrete_wall", "concrete_wall")
+    wall = np.array([palette.pick(names[int(k)], rng) for k in rng.integers(0, 4, len(centre))])
+    roofs = np.array([palette.pick(("clay_roof_tile", "bitumen_felt_roof")[int(k)], rng) for k in rng.integers(0, 2, len(centre))])
+    model = Modeller()
+    model.box((-0.5, -0.5, 0.0), (0.5, 0.5, 1.0), 0, Semantic.WALL)
+    template = model.finish()
+    roof = template.vertices[template.faces][..., 2].min(axis=1) > 0.5
+    template = replace(
+        template,
+        slot=np.where(roof, 1, 0),
+        semantic=np.where(roof, int(Semantic.ROOF), int(Semantic.WALL)),
+    )
+    base = np.column_stack([centre, relief(centre) - 1.5])
+    owner = builder.new_objects(len(centre)) + np.arange(len(centre))
+    scale = size + np.array([0, 0, 1.5])
+    return place(template, base, heading, scale, np.column_stack([wall, roofs]), owner)
+
+
+def _groves(
+    centre: np.ndarray,
+    size: np.ndarray,
+    relief: WaveRelief,
+    palette: PaletteBuilder,
+    builder: GeometryBuilder,
+    rng: np.random.Generator,
+) -> Part:
+    skin = np.array([[palette.pick("tree_crown", rng)] for _ in range(len(centre))], np.int64).reshape(-1, 1)
+    position = np.column_stack([centre, relief(centre)])
+    scale = np.column_stack([size[:, 0], size[:, 0], rng.uniform(7.0, 13.0, len(centre))])
+    first = builder.new_objects(len(centre))
+    heading = rng.uniform(0.0, 2 * np.pi, len(centre))
+    return place(grove(rng), position, heading, scale, skin, first + np.arange(len(centre)))

@@ -1,0 +1,151 @@
+"""What stands on roofs: air handlers, vents, lift houses, skylights, chimneys."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from scenegen.classes import Semantic
+from scenegen.geometry.modelling import Modeller
+from scenegen.geometry.part import Part
+from scenegen.geometry.placement import first_come, rectangles
+from scenegen.geometry.template import Template, place
+from scenegen.maps.city.buildings import Building
+from scenegen.maps.city.roofs import flat_outline
+from scenegen.maps.city.styles import Kind, Roof
+
+_EDGE_M = 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class _Model:
+    """A kind of roof equipment: its template and how it is drawn."""
+
+    template: Template
+    size_m: tuple[tuple[float, float], tuple[float, float], tuple[float, float]]
+    weight: float
+    slots: tuple[str, ...]
+
+
+def _air_handler() -> Template:
+    model = Modeller()
+    model.box((-0.5, -0.5, 0.12), (0.5, 0.5, 0.85), 0, Semantic.ROOF_EQUIPMENT)
+    for x in (-0.25, 0.25):
+        model.tube(np.array([x, 0, 0.8]), np.array([x, 0, 1.0]), 0.17, 0.17, 0, Semantic.ROOF_EQUIPMENT, sides=8)
+        model.quads(
+            np.array([[[x - 0.12, -0.12, 0.96], [x + 0.12, -0.12, 0.96], [x + 0.12, 0.12, 0.96], [x - 0.12, 0.12, 0.96]]]),
+            1,
+            Semantic.ROOF_EQUIPMENT,
+        )
+    return model.finish()
+
+
+def _vent() -> Template:
+    model = Modeller()
+    model.tube(np.zeros(3), np.array([0, 0, 0.8]), 0.32, 0.32, 0, Semantic.ROOF_EQUIPMENT, sides=8)
+    model.tube(np.array([0, 0, 0.75]), np.array([0, 0, 1.0]), 0.5, 0.12, 0, Semantic.ROOF_EQUIPMENT, sides=8)
+    return model.finish()
+
+
+def _house() -> Template:
+    model = Modeller()
+    model.box((-0.5, -0.5, 0), (0.5, 0.5, 1), 0, Semantic.ROOF_EQUIPMENT)
+    model.box((-0.54, -0.54, 1), (0.54, 0.54, 1.06), 1, Semantic.ROOF_EQUIPMENT)
+    return model.finish()
+
+
+def _skylight() -> Template:
+    model = Modeller()
+    model.box((-0.5, -0.5, 0), (0.5, 0.5, 0.5), 0, Semantic.ROOF_EQUIPMENT)
+    a, b = 0.46, 0.5
+    panes = [
+        [[-a, -a, b], [a, -a, b], [a, 0, 1], [-a, 0, 1]],
+        [[a, a, b], [-a, a, b], [-a, 0, 1], [a, 0, 1]],
+    ]
+    model.quads(np.array(panes, np.float64), 1, Semantic.WINDOW)
+    return model.finish()
+
+
+_MODELS = (
+    _Model(_air_handler(), ((1.6, 4.5), (1.2, 2.4), (1.2, 2.2)), 0.34, ("metal", "cap")),
+    _Model(_vent(), ((0.5, 1.0), (0.5, 1.0), (0.7, 1.5)), 0.34, ("metal",)),
+    _Model(_house(), ((3.0, 5.5), (2.6, 4.0), (2.2, 3.2)), 0.12, ("wall", "roof")),
+    _Model(_skylight(), ((1.6, 4.0), (1.0, 1.6), (0.5, 0.9)), 0.20, ("metal", "glass")),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class RoofGear:
+    """Drawn equipment: parts, and the plan of each piece so that no roof sites lie below."""
+
+    parts: tuple[Part, ...]
+    plans: np.ndarray
+
+
+def draw_roof_gear(buildings: Sequence[Building], rng: np.random.Generator) -> RoofGear:
+    """Equip all flat roofs, and put chimneys on pitched ones."""
+    roofs = [(b, f) for b in buildings for v in b.volumes if (f := flat_outline(b, v)) is not None]
+    area = np.array([f[0].area for _, f in roofs])
+    rate = np.where([b.kind in (Kind.OFFICE, Kind.TOWER, Kind.SHED) for b, _ in roofs], 1 / 60.0, 1 / 110.0)
+    roof = np.repeat(np.arange(len(roofs)), rng.poisson(area * rate) + 1)
+    bounds = shapely.bounds(np.array([f[0] for _, f in roofs], dtype=object))[roof]
+    centre = bounds[:, :2] + rng.uniform(size=(len(roof), 2)) * (bounds[:, 2:] - bounds[:, :2])
+    model = rng.choice(len(_MODELS), len(roof), p=[m.weight for m in _MODELS])
+    ranges = np.array([m.size_m for m in _MODELS])[model]
+    size = ranges[..., 0] + rng.uniform(size=(len(roof), 3)) * (ranges[..., 1] - ranges[..., 0])
+    heading = np.array([_heading(b) for b, _ in roofs])[roof] + 0.5 * np.pi * rng.integers(0, 2, len(roof))
+    plans = rectangles(centre, size[:, 0] + 2 * _EDGE_M, size[:, 1] + 2 * _EDGE_M, heading)
+    outlines = np.array([f[0] for _, f in roofs], dtype=object)[roof]
+    keep = shapely.contains(outlines, plans)
+    keep[np.flatnonzero(keep)] = first_come(plans[keep])
+    height = np.array([f[1] for _, f in roofs])[roof]
+    parts = []
+    for k, kind in enumerate(_MODELS):
+        mine = np.flatnonzero(keep & (model == k))
+        owners = [roofs[int(roof[i])][0] for i in mine]
+        skins = np.array([[getattr(b.style, s) for s in kind.slots] for b in owners], np.int64)
+        position = np.column_stack([centre[mine], height[mine] - 0.02])
+        objects = np.array([b.object for b in owners], np.int64)
+        parts.append(
+            place(kind.template, position, heading[mine], size[mine], skins.reshape(-1, len(kind.slots)), objects)
+        )
+    chimneys = _chimneys(buildings, rng)
+    occupied = shapely.buffer(plans[keep], -0.5 * _EDGE_M, join_style="mitre")
+    return RoofGear((*parts, *chimneys), occupied)
+
+
+def _heading(building: Building) -> float:
+    side = building.volumes[0].rings[0]
+    step = np.roll(side, -1, axis=0) - side
+    longest = step[int(np.argmax(np.linalg.norm(step, axis=1)))]
+    return float(np.arctan2(longest[1], longest[0]))
+
+
+def _chimneys(buildings: Sequence[Building], rng: np.random.Generator) -> list[Part]:
+    """One or two stacks near the ridge of gables and hips."""
+    model = Modeller()
+    model.box((-0.5, -0.5, 0), (0.5, 0.5, 1), 0, Semantic.CHIMNEY)
+    rows, skins, objects = [], [], []
+    for building in buildings:
+        volume = building.volumes[0]
+        if volume.form not in (Roof.GABLE, Roof.HIP) or building.kind is Kind.SHED:
+            continue
+        ring = volume.rings[0]
+        heading = _heading(building)
+        along = np.array([np.cos(heading), np.sin(heading)])
+        sides = np.sort(np.linalg.norm(np.roll(ring, -1, axis=0) - ring, axis=1))
+        ridge = volume.eave_m(building.style) + sides[0] / 2 * building.style.roof_slope
+        reach = max(sides[-1] / 2 - sides[0] / 2, 0.4) * 0.8
+        for _ in range(int(rng.integers(1, 3))):
+            xy = ring.mean(axis=0) + along * rng.uniform(-reach, reach)
+            rows.append([*xy, ridge - 0.9, heading])
+            skins.append([building.style.wall])
+            objects.append(building.object)
+    if not rows:
+        return []
+    table = np.array(rows)
+    scale = np.tile([[0.9, 0.6, 2.1]], (len(table), 1))
+    return [place(model.finish(), table[:, :3], table[:, 3], scale, np.array(skins), np.array(objects))]
