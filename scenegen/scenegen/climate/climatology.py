@@ -102,6 +102,6 @@ def normals(season: Season) -> Normals:
     expected = float(np.interp(latitude, _LATITUDES, _YEAR_MEAN_C)) + swing * summer
     return Normals(
         expected_C=expected,
-        spread_K=2.0 + 0.06 * latitude,
+        spread_K=(1.7 + 0.055 * latitude) * (1.0 - 0.25 * summer),  # winters are more changeable
         half_range_K=float(np.interp(latitude, _LATITUDES, _DAILY_HALF_RANGE_K)) * (1.0 + 0.2 * summer),
     )

@@ -22,13 +22,9 @@ _DATE = re.compile(r"(\d{1,2})-(\d{1,2})")
 
 
 def _bounded(name: str, low: float, high: float, unit: str, *, open_end: bool = False) -> AfterValidator:
-    """Check that a span is ordered and inside physical bounds."""
+    """Check that a span lies inside physical bounds (`Span` has seen to its order)."""
 
     def check(value: tuple[float, float]) -> tuple[float, float]:
-        if value[0] > value[1]:
-            raise ValueError(
-                f"{name}: the range [{value[0]:g}, {value[1]:g}] is upside down; write the smaller first"
-            )
         if value[0] < low or value[1] > high or (open_end and value[1] >= high):
             upper = f"below {high:g}" if open_end else f"at most {high:g}"
             wrong = next(v for v in value if v < low or v > high or (open_end and v >= high))

@@ -108,7 +108,7 @@ class ClassDays:
         """Solve every class of a world for a day."""
         traits = ClassTraits.of(palette, classes.palette, classes.normal, weather)
         Y, inner = _conduction(palette, classes.palette, day)
-        beam = _beam_over_day(outlook.beam, sun_hour, day)
+        beam = outlook.beam_over(day, sun_hour)
         neighbours = Neighbours.unknown(day, outlook.neighbour.shape[1])
         guess: Float64[np.ndarray, "classes samples"] | None = None
         for _ in range(_EXCHANGES):
@@ -164,14 +164,6 @@ def _bounded(
 ) -> Float64[np.ndarray, "classes samples"]:
     fixed = traits.fixed_K[:, None]
     return np.where(np.isfinite(fixed), fixed, np.minimum(temperature_K, traits.ceiling_K[:, None]))
-
-
-def _beam_over_day(
-    beam: Float64[np.ndarray, "classes times"], sun_hour: Float64[np.ndarray, "times"], day: Day
-) -> Float64[np.ndarray, "classes samples"]:
-    if sun_hour.size == 0:
-        return np.zeros((beam.shape[0], day.hour.size))
-    return beam[:, day.nearest(sun_hour)]
 
 
 def _conduction(

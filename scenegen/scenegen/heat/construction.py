@@ -25,7 +25,7 @@ _LINING = Layer(0.06, 60.0, 1200.0, 0.02)
 _PANE_GAP = Layer(0.1, 1.2, 1005.0, 0.016)
 _ROOM_SIDE_Wm2K = 7.7
 # The air below roof tiles is stirred but sun-warmed itself: its coupling to the outdoor air is weak.
-_GAP_SIDE_Wm2K = 0.8
+_GAP_SIDE_Wm2K = 0.5
 _CABIN_SIDE_Wm2K = 7.7
 _TISSUE_Wm2K = 12.0
 

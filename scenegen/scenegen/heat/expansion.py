@@ -12,7 +12,7 @@ from scenegen.heat.balance import DaySolution
 from scenegen.heat.class_days import ClassDays
 from scenegen.heat.forcing import Day
 from scenegen.heat.outlook import Outlook, single
-from scenegen.heat.shadow import collect, memory
+from scenegen.heat.shadow import memory
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,7 +59,7 @@ class Expansion:
         usual = usual + np.einsum("cg,cg->c", neighbour, outlook.neighbour)
         return Expansion(
             base=_single(solution.temperature_K[:, 0] - usual),
-            per_beam=_single(_per_sun_time(beam, day, sun_hour)),
+            per_beam=_single(np.einsum("cn,nk->ck", beam, day.spread(sun_hour))),
             per_sky=_single(sky),
             per_neighbour=_single(neighbour),
             full_sun=_single(np.einsum("cn,cn->c", beam, days.cos_sun)),
@@ -102,14 +102,6 @@ def site_temperatures(
 
 _LEAST_SUN_K = np.float32(1e-3)
 """With less than that from the sun both expansions are the same."""
-
-
-def _per_sun_time(
-    beam: Float64[np.ndarray, "classes samples"], day: Day, sun_hour: Float64[np.ndarray, "times"]
-) -> Float64[np.ndarray, "classes times"]:
-    if sun_hour.size == 0:
-        return np.zeros((beam.shape[0], 0))
-    return collect(beam, day.nearest(sun_hour), sun_hour.size)
 
 
 def _felt(

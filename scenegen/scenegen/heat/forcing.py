@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float64, Int64
+from jaxtyping import Float64
 
 from scenegen.climate.broadband import sky_irradiance
 from scenegen.climate.season import Season
@@ -63,7 +63,28 @@ class Day:
             air=Air(air_K, weather.wind_mps, weather.vapour_pressure_hPa),
         )
 
-    def nearest(self, hour: Float64[np.ndarray, "times"]) -> Int64[np.ndarray, "samples"]:
-        """For each sample the index of the nearest of some hours, around the clock."""
-        apart = np.abs(self.hour[:, None] - hour[None, :])
-        return np.asarray(np.argmin(np.minimum(apart, 24.0 - apart), axis=1))
+    def spread(self, sun_hour: Float64[np.ndarray, "times"]) -> Float64[np.ndarray, "samples times"]:
+        """Share of each sample's interval that lies nearest to each of the exposure's sun times.
+
+        Sun visibility is constant half a step around each sun time, and these steps do not match ours. Counting the
+        overlap instead of picking the nearest keeps a moving shadow's edge to a fraction of a step. Rows sum to one
+        by day and to zero by night.
+        """
+        if sun_hour.size == 0:
+            return np.zeros((self.hour.size, 0))
+        edges = _edges(sun_hour)
+        half = 12.0 / self.hour.size
+        overlap = np.zeros((self.hour.size, sun_hour.size))
+        for turn in (-24.0, 0.0, 24.0):
+            first = np.maximum(edges[None, :-1] + turn, self.hour[:, None] - half)
+            last = np.minimum(edges[None, 1:] + turn, self.hour[:, None] + half)
+            overlap += np.maximum(last - first, 0.0)
+        return overlap / (2.0 * half)
+
+
+def _edges(sun_hour: Float64[np.ndarray, "times"]) -> Float64[np.ndarray, "edges"]:
+    """Limits [h] of the steps around sun times, midway between neighbours; a single time stands for the whole day."""
+    if sun_hour.size == 1:
+        return np.array([sun_hour[0] - 12.0, sun_hour[0] + 12.0])
+    middle = 0.5 * (sun_hour[1:] + sun_hour[:-1])
+    return np.concatenate([[2 * sun_hour[0] - middle[0]], middle, [2 * sun_hour[-1] - middle[-1]]])

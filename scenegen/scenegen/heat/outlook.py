@@ -10,6 +10,7 @@ from jaxtyping import Float16, Float32, Float64
 from scenegen.exposure import Exposure
 from scenegen.heat.classes import ThermalClasses
 from scenegen.heat.emitters import EMITTER_GROUPS, group_classes
+from scenegen.heat.forcing import Day
 from scenegen.materials.material import Surface
 
 
@@ -33,6 +34,12 @@ class Outlook:
     sky: Float64[np.ndarray, "classes"]
     neighbour: Float64[np.ndarray, "classes groups"]
     membership: Float64[np.ndarray, "groups classes"]
+
+    def beam_over(
+        self, day: Day, sun_hour: Float64[np.ndarray, "times"]
+    ) -> Float64[np.ndarray, "classes samples"]:
+        """Mean beam at the samples of a day; zero in the night."""
+        return np.asarray(np.einsum("ck,nk->cn", self.beam, day.spread(sun_hour)))
 
     @staticmethod
     def of(

@@ -9,7 +9,7 @@ sites follow by one product.
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Complex128, Float64, Int64
+from jaxtyping import Complex128, Float64
 
 _STEPS = 80
 _TOLERANCE = 1e-4
@@ -48,11 +48,3 @@ def memory(
         ):
             break
     return np.asarray(weight)
-
-
-def collect(
-    weight: Float64[np.ndarray, "surfaces samples"], index: Int64[np.ndarray, "samples"], count: int
-) -> Float64[np.ndarray, "surfaces count"]:
-    """Sum weights of samples that share an index (the sun position nearest to them)."""
-    chosen = (index[:, None] == np.arange(count)[None, :]).astype(np.float64)
-    return np.asarray(np.einsum("cn,nk->ck", weight, chosen))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float32
 
+from scenegen.climate.humidity import dew_point_K
 from scenegen.climate.season import Season
 from scenegen.climate.weather import Weather
 from scenegen.exposure import Exposure
@@ -73,8 +74,7 @@ class HeatModel:
     def _texture(self, days: ClassDays, day: Day) -> Float32[np.ndarray, "palette"]:
         """Texture amplitude of each palette entry now: area mean over its classes."""
         short, _ = mean_irradiance(self.outlook, days.neighbours, day)
-        if self.exposure.sun_hour.size:
-            short = short + day.direct_Wm2 * self.outlook.beam[:, day.nearest(self.exposure.sun_hour)]
+        short = short + day.direct_Wm2 * self.outlook.beam_over(day, self.exposure.sun_hour)
         solar = solar_memory(memory(days.lit.slope_Wm2K, days.admittance), short)
         entries = len(self.world.palette)
         area = np.bincount(self.classes.palette, weights=self.classes.area_m2, minlength=entries)
@@ -111,7 +111,7 @@ def solve_uniform(world: World, temperature_K: float, atmosphere: Atmosphere) ->
         air_mean_K=atmosphere.air_K,
         air_amplitude_K=0.0,
         air_peak_hour=15.0,
-        dew_point_K=atmosphere.air_K,
+        dew_point_K=dew_point_K(atmosphere.vapour_pressure_hPa),
         wind_mps=0.0,
         cloud_fraction=atmosphere.cloud_fraction,
         linke_turbidity=3.0,
