@@ -49,7 +49,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
         say(f"scenegen {version('thermal-scenegen')}")
         return 0
-    signal.signal(signal.SIGTERM, _terminate)
+    before = signal.signal(signal.SIGTERM, _terminate)
     try:
         return _run(words)
     except KeyboardInterrupt:
@@ -63,6 +63,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 0
     except Exception as error:
         return _explain(error)
+    finally:
+        signal.signal(signal.SIGTERM, before)
 
 
 def _run(words: list[str]) -> int:

@@ -14,7 +14,7 @@ from scenegen_cli.console import note, say, say_json, size
 from scenegen_cli.main import TerminatedError
 from scenegen_cli.progress import Meter
 from scenegen_datasets.probe import render_fingerprint
-from scenegen_datasets.run import Job, Outcome, check, run
+from scenegen_datasets.run import Job, Outcome, prepare, run
 from scenegen_datasets.verify import VerifyReport, verify
 
 QUARANTINED = 3
@@ -55,7 +55,7 @@ def make(job: Job, again: Sequence[str], *, check_after: bool, as_json: bool) ->
     int
         Exit code.
     """
-    check(job)
+    prepare(job)
     if not as_json:
         note(f"{job.root}: {plan_in_words(job)}")
     try:

@@ -52,7 +52,11 @@ def parse(command: type[Command], name: str, arguments: Sequence[str], more_help
     try:
         with contextlib.redirect_stdout(shown), contextlib.redirect_stderr(complaint):
             value, rest = tyro.cli(
-                command, prog=f"scenegen {name}", args=list(arguments), return_unknown_args=True
+                command,
+                prog=f"scenegen {name}",
+                args=list(arguments),
+                return_unknown_args=True,
+                config=(tyro.conf.FlagCreatePairsOff,),
             )
     except SystemExit as leaving:
         if not leaving.code:

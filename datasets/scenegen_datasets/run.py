@@ -23,15 +23,15 @@ from scenegen_datasets.pictures.preview import write_preview
 from scenegen_datasets.plan import plan
 from scenegen_datasets.recipe import SCENE_SEMANTICS, Recipe
 from scenegen_datasets.run_log import RunLog, machine
-from scenegen_datasets.store import clean, create_or_open, finished
+from scenegen_datasets.store import check_output, clean, create_or_open, finished
 
 ONE_THREAD = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS"), "1"
 )
 """Environment of a worker: set before its interpreter starts, because these are read once."""
 
-BYTES_PER_PIXEL = 13.0
-"""Size on disk of one frame with the default layers, per pixel; measured, on the high side."""
+BYTES_PER_PIXEL, BYTES_PER_FRAME = 17.0, 15_000
+"""Size on disk of one frame with the default layers; measured, on the high side."""
 
 SHARE_FROM = 3
 """A world is exposed a second time by another worker if at least this many of its clips are open."""
@@ -80,7 +80,7 @@ class Job:
         """Estimated size of the whole dataset."""
         camera = self.recipe.camera
         frames = sum(clip.frames for clip in self.clips)
-        return round(frames * camera.width_px * camera.height_px * BYTES_PER_PIXEL)
+        return round(frames * (camera.width_px * camera.height_px * BYTES_PER_PIXEL + BYTES_PER_FRAME))
 
 
 @dataclass(frozen=True)
@@ -149,8 +149,7 @@ def run(job: Job, render: Mapping[str, str], told: Told) -> Outcome:
         scene_semantics=SCENE_SEMANTICS,
         render=render,
     )
-    check(job)
-    _make_directory(job.root)
+    prepare(job)
     with DirectoryLock(job.root):
         create_or_open(job.root, _yaml(job.asked), lock, allow_mixed=job.allow_mixed)
         clean(job.root)
@@ -260,22 +259,13 @@ class JobError(ScenegenError, RuntimeError):
     exit_code = 1
 
 
-def _make_directory(root: Path) -> None:
-    try:
-        root.mkdir(parents=True, exist_ok=True)
-    except FileExistsError:
-        raise InputError(f"--out {root}: is a file; name a directory") from None
-    except OSError as error:
-        raise InputError(f"--out {root}: cannot be made: {error.strerror}; choose another --out") from None
-
-
-def check(job: Job) -> None:
-    """Refuse what cannot end well before anything is started or written.
+def prepare(job: Job) -> None:
+    """Make the directory, after refusing what cannot end well; nothing is started, and nothing written in vain.
 
     Raises
     ------
     InputError
-        If the output cannot be written.
+        If the output cannot be written, or holds something that is not a dataset.
     NoSpaceError
         If what is missing does not fit on the device.
     """
@@ -285,17 +275,30 @@ def check(job: Job) -> None:
             raise InputError(f"--out {job.root}: {existing} is a file; name a directory")
         if not os.access(existing, os.W_OK | os.X_OK):
             raise InputError(f"--out {job.root}: {existing} cannot be written; choose another --out")
-        free = shutil.disk_usage(existing).free
+        if existing == job.root.absolute():
+            check_output(job.root)
+        device = shutil.disk_usage(existing)
         done = finished(job.root) if job.root.is_dir() else set()
+    except ScenegenError:
+        raise
     except (OSError, ValueError) as error:
-        raise InputError(f"--out {str(job.root)!r}: cannot be used: {error}") from None
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise InputError(
+            f"--out {str(job.root)[:80]!r}: cannot be used: {reason}; choose another --out"
+        ) from None
     missing = sum(clip.name not in done for clip in job.clips)
-    need = job.bytes * missing / len(job.clips)
-    if need > free:
+    need, free = job.bytes * missing / len(job.clips), device.free
+    if need > free and device.total > 0:  # a pseudo file system has no size at all
         raise NoSpaceError(
             f"{job.root}: about {need / 1e9:.1f} GB are needed and {free / 1e9:.1f} GB are free; "
             "ask for fewer pairs or fewer layers, or choose another --out"
         )
+    try:
+        job.root.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(
+            f"--out {job.root}: cannot be made: {error.strerror}; choose another --out"
+        ) from None
 
 
 def _yaml(asked: Mapping[str, Any]) -> str:
