@@ -7,11 +7,9 @@ that none of them can pass by finding nothing.
 from __future__ import annotations
 
 import ast
-import json
-import subprocess
-import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import cache, cached_property
 from pathlib import Path
 
 import pytest
@@ -43,7 +41,7 @@ class Module:
     path: str
     text: str
 
-    @property
+    @cached_property
     def tree(self) -> ast.Module:
         return ast.parse(self.text, self.path)
 
@@ -56,7 +54,8 @@ Finding = tuple[int, str]
 Rule = Callable[[Module], Iterator[Finding]]
 
 
-def modules() -> list[Module]:
+@cache
+def modules() -> tuple[Module, ...]:
     """All modules of all rooms, in a fixed order."""
     found = []
     for room, folder in ROOMS.items():
@@ -64,7 +63,7 @@ def modules() -> list[Module]:
             parts = path.relative_to(ROOT / folder).with_suffix("").parts
             name = ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
             found.append(Module(name, str(path.relative_to(ROOT)), path.read_text("utf-8")))
-    return found
+    return tuple(found)
 
 
 def imports(module: Module) -> Iterator[Finding]:
@@ -304,36 +303,3 @@ def test_exceptions_to_the_clock_rule_exist_and_need_it() -> None:
         assert list(nothing_asks_for_the_time(twin)), (
             f"{name} no longer asks for the time; take it off the list"
         )
-
-
-def loaded_by(statement: str) -> set[str]:
-    """Top-level packages outside the standard library that a fresh interpreter loads for a statement."""
-    code = (
-        "import json, sys\nbefore = set(sys.modules)\n"
-        f"{statement}\n"
-        "tops = {name.partition('.')[0] for name in set(sys.modules) - before}\n"
-        "print(json.dumps(sorted(tops - set(sys.stdlib_module_names))), file=sys.__stdout__)\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, timeout=120, cwd=ROOT / "tests"
-    )
-    assert done.returncode == 0, done.stderr
-    return set(json.loads(done.stdout.strip().splitlines()[-1]))
-
-
-def test_reading_a_dataset_needs_numpy_only() -> None:
-    assert loaded_by("import scenegen_datasets") <= {"numpy", "scenegen", "scenegen_datasets"}
-
-
-def test_importing_every_room_below_the_renderer_leaves_the_renderer_alone() -> None:
-    heavy = {"mitsuba", "drjit", "torch"}
-    rooms = (
-        "scenegen.world",
-        "scenegen_render.camera",
-        "scenegen_flythrough.fly",
-        "scenegen_trainers.metrics",
-    )
-    assert not loaded_by("import " + ", ".join(rooms)) & heavy
-    assert "pydantic" in loaded_by(
-        "import scenegen_flythrough.knobs"
-    )  # the probe does see third-party packages
