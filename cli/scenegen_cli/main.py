@@ -7,9 +7,9 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
-from types import FrameType
 
 from scenegen_cli.console import complain, say
+from scenegen_cli.leaving import INTERRUPTED, TERMINATED, TerminatedError, terminate
 
 COMMANDS = {
     "demo": "make a few pairs in a minute and show where the pictures are",
@@ -24,12 +24,6 @@ COMMANDS = {
     "sensors": "list the cameras",
 }
 """Subcommands; each is a module of this package with a function ``run(arguments) -> exit code``."""
-
-INTERRUPTED, TERMINATED = 130, 143
-
-
-class TerminatedError(BaseException):
-    """SIGTERM was received. Like KeyboardInterrupt, nothing but the front door catches it."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -49,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
         say(f"scenegen {version('thermal-scenegen')}")
         return 0
-    before = signal.signal(signal.SIGTERM, _terminate)
+    before = signal.signal(signal.SIGTERM, terminate)
     try:
         return _run(words)
     except KeyboardInterrupt:
@@ -97,10 +91,6 @@ def _explain(error: Exception) -> int:
         f"a bug: {type(error).__name__}: {' '.join(str(error).split())[:200]}; the traceback is in {file.name}"
     )
     return 1
-
-
-def _terminate(_signal: int, _frame: FrameType | None) -> None:
-    raise TerminatedError
 
 
 def _help() -> str:

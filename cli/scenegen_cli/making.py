@@ -11,7 +11,7 @@ from typing import Any
 
 from scenegen.foundation.errors import InputError
 from scenegen_cli.console import note, say, say_json, size
-from scenegen_cli.main import TerminatedError
+from scenegen_cli.leaving import TerminatedError
 from scenegen_cli.progress import Meter
 from scenegen_datasets.probe import render_fingerprint
 from scenegen_datasets.run import Job, Outcome, prepare, run

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from jaxtyping import UInt8
 
 from scenegen_datasets.pictures import colour
 from scenegen_datasets.pictures.shot import Shot
@@ -61,7 +62,7 @@ def tile_size(shape: tuple[int, ...]) -> tuple[int, int]:
     return TILE_PX, max(1, round(TILE_PX * shape[0] / shape[1]))
 
 
-def resized(picture: colour.Picture, *, smooth: bool) -> colour.Picture:
+def resized(picture: colour.Picture, *, smooth: bool) -> UInt8[np.ndarray, "tile_rows tile_columns 3"]:
     """Fit a picture to a tile; ids and edges keep their exact colours unless `smooth`."""
     size = tile_size(picture.shape)
     if (picture.shape[1], picture.shape[0]) == size:

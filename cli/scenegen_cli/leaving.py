@@ -1,0 +1,17 @@
+"""How the command leaves when it is told to."""
+
+from __future__ import annotations
+
+from types import FrameType
+
+INTERRUPTED, TERMINATED = 130, 143
+"""Exit codes after SIGINT and SIGTERM."""
+
+
+class TerminatedError(BaseException):
+    """SIGTERM was received. Like KeyboardInterrupt, nothing but the front door catches it."""
+
+
+def terminate(_signal: int, _frame: FrameType | None) -> None:
+    """Signal handler."""
+    raise TerminatedError
