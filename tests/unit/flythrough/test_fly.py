@@ -233,3 +233,49 @@ def test_a_clip_needs_a_frame(city, city_air: Airspace) -> None:
 def test_an_airspace_of_another_world_is_refused(city, hills_air: Airspace) -> None:
     with pytest.raises(AssertionError, match="another world"):
         fly(city.world, FlightKnobs(), 3, stream(1), hills_air)
+
+
+@pytest.fixture(scope="module")
+def net(build_city) -> Airspace:
+    """Wires of 2 cm, 12 m apart both ways, 10 m above a plain: too thin to steer around, easy to step over."""
+    at = np.arange(-144.0, 150.0, 12.0)
+    wires = [[[x, -150.0, 10.0], [x + 0.02, 150.0, 10.02]] for x in at]
+    wires += [[[-150.0, y, 10.0], [150.0, y + 0.02, 10.02]] for y in at]
+    return Airspace(build_city(np.array(wires)).world)
+
+
+def test_no_wire_between_two_frames_is_overlooked(net: Airspace) -> None:
+    """Steps of 5 m: a wire is crossed between frames far more often than touched at one, also in the last step."""
+    knobs = FlightKnobs(height_m=10.0, climb_deg=0.0, spacing_m=5.0, clearance_m=0.3)
+    share = np.linspace(0, 1, 200)[:, None]
+    searched = 0
+    for index in range(40):
+        trajectory = fly(net.world, knobs, 1, stream(6, index), net)
+        points = np.concatenate([a + share * (b - a) for a, b in pairwise(positions(trajectory))])
+        nearest = (np.abs((points[:, :2] + 6.0) % 12.0 - 6.0)).min()  # in the plane of the wires
+        assert nearest >= knobs.clearance_m - 0.03
+        searched += trajectory.rejected
+    assert searched > 40  # most draws do cross a wire
+
+
+def test_a_flight_longer_than_a_mesh_of_the_net_is_impossible(net: Airspace) -> None:
+    knobs = FlightKnobs(height_m=10.0, climb_deg=0.0, spacing_m=5.0, clearance_m=0.3, max_draws=128)
+    with pytest.raises(RejectedDrawError):
+        fly(net.world, knobs, 8, stream(6), net)
+
+
+def test_rejected_draws_are_counted_one_by_one(net: Airspace) -> None:
+    """Allowing exactly one draw more than were rejected gives the same flight; allowing no more gives none."""
+    knobs = FlightKnobs(height_m=10.0, climb_deg=0.0, spacing_m=4.0, clearance_m=0.3)
+    counts = []
+    for index in range(12):
+        trajectory = fly(net.world, knobs, 1, stream(8, index), net)
+        counts.append(trajectory.rejected)
+        enough = knobs.model_copy(update={"max_draws": trajectory.rejected + 1})
+        again = fly(net.world, enough, 1, stream(8, index), net)
+        assert again.world_from_camera.tobytes() == trajectory.world_from_camera.tobytes()
+        if trajectory.rejected:
+            with pytest.raises(RejectedDrawError, match=f"after {trajectory.rejected} draws"):
+                short = knobs.model_copy(update={"max_draws": trajectory.rejected})
+                fly(net.world, short, 1, stream(8, index), net)
+    assert len(set(counts)) > 3
