@@ -67,12 +67,12 @@ def _temperature(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]
 def _semantic(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
     if arrays[name].max() >= len(CLASSES):
         yield f"class id {arrays[name].max()} is not in the class list"
-    sky = arrays[name] == Semantic.SKY
+    solid = arrays[name] != Semantic.SKY
     for ids in ("instance", "material"):
-        if ids in arrays and arrays[ids][sky].any():
+        if ids in arrays and ((arrays[ids] != 0) & ~solid).any():
             yield f"sky has an {ids} id"
-        if ids == "material" and ids in arrays and not arrays[ids][~sky].all():
-            yield "a surface has no material"
+    if "material" in arrays and ((arrays["material"] == 0) & solid).any():
+        yield "a surface has no material"
 
 
 def _material(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
@@ -97,10 +97,13 @@ def _flow(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
     seen = arrays.get(name.replace("flow", "covisible"))
     if seen is None:
         return
-    rows, columns = np.nonzero(seen)
-    to = flow[rows, columns] + np.stack([columns, rows], axis=-1) + 0.5
-    limit = np.array([flow.shape[1], flow.shape[0]]) + _EDGE_PX
-    if not ((to >= -_EDGE_PX) & (to <= limit)).all():
+    rows, columns = seen.shape
+    right = flow[..., 0] + np.arange(0.5, columns, dtype=np.float32)
+    down = flow[..., 1] + np.arange(0.5, rows, dtype=np.float32)[:, None]
+    inside = (
+        (right >= -_EDGE_PX) & (right <= columns + _EDGE_PX) & (down >= -_EDGE_PX) & (down <= rows + _EDGE_PX)
+    )
+    if (seen & ~inside).any():
         yield "a covisible point lies outside the other image (or is NaN)"
 
 

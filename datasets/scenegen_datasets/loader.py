@@ -6,9 +6,10 @@ Every byte is checked against its CRC-32 before it is decoded: damage raises `Co
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, SupportsIndex
 
 import numpy as np
 
@@ -114,7 +115,7 @@ class PairDataset:
     def __iter__(self) -> Iterator[Sample]:
         return (self[i] for i in range(len(self)))
 
-    def __getitem__(self, index: int) -> Sample:
+    def __getitem__(self, index: SupportsIndex) -> Sample:
         """Return one sample; negative indices count from the end.
 
         Raises
@@ -124,8 +125,8 @@ class PairDataset:
         CorruptFrameError
             If the stored bytes are not what was written.
         """
-        length = len(self)
-        at = index + length if index < 0 else index
+        length, at = len(self), operator.index(index)
+        at += length if at < 0 else 0
         if not 0 <= at < length:
             raise IndexError(f"sample {index} of {length}")
         clip = int(np.searchsorted(self._ends, at, side="right"))

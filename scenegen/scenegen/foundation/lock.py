@@ -80,6 +80,7 @@ class DirectoryLock:
 
     def _attempt_without_flock(self) -> int:
         """Claim by exclusive creation of a second file; take it over only from a dead process of this host."""
+        self.path.unlink(missing_ok=True)
         claim = self.path.with_name(self.path.name + ".claim")
         try:
             descriptor = os.open(
@@ -92,7 +93,6 @@ class DirectoryLock:
                 return -1
             raise self._busy(holder) from None
         _write_holder(descriptor)
-        self.path.unlink(missing_ok=True)
         self.path = claim
         return descriptor
 
