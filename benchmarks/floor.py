@@ -22,6 +22,7 @@ from scenegen.materials.table import material
 from scenegen.world import World
 from scenegen_render import backend, reference_scenes
 from scenegen_render.camera import Camera
+from scenegen_render.reference_scenes import looking
 from scenegen_render.scene import LoadedWorld, load
 from scenegen_render.trace import pixels
 from scenegen_render.trace.pose import device_pose
@@ -72,24 +73,12 @@ def city(seed: int = 0) -> World:
 
 def poses(rng: np.random.Generator, count: int = 12, extent_m: float = 250.0) -> list[np.ndarray]:
     """Places 20 to 60 m above the streets, looking ahead and 5 to 35 degrees down."""
-    return [
-        look(
-            (*rng.uniform(-extent_m, extent_m, 2), rng.uniform(20.0, 60.0)),
-            rng.uniform(0.0, 2 * np.pi),
-            -np.radians(rng.uniform(5.0, 35.0)),
-        )
-        for _ in range(count)
-    ]
-
-
-def look(position: tuple[float, float, float], yaw: float, pitch: float) -> np.ndarray:
-    """Level camera at a position, heading `yaw` from east and looking `pitch` up [rad]."""
-    forward = np.array([np.cos(yaw) * np.cos(pitch), np.sin(yaw) * np.cos(pitch), np.sin(pitch)])
-    right = np.array([np.sin(yaw), -np.cos(yaw), 0.0])
-    pose = np.eye(4)
-    pose[:3, :3] = np.stack([right, np.cross(forward, right), forward], axis=-1)
-    pose[:3, 3] = position
-    return pose
+    drawn = []
+    for _ in range(count):
+        x, y = rng.uniform(-extent_m, extent_m, 2)
+        place = (float(x), float(y), float(rng.uniform(20.0, 60.0)))
+        drawn.append(looking(place, float(rng.uniform(0.0, 360.0)), -float(rng.uniform(5.0, 35.0))))
+    return drawn
 
 
 def cpu_ms(call: Any) -> float:

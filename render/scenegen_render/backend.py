@@ -18,13 +18,17 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from types import ModuleType
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float32, UInt32
 
 from scenegen.foundation.errors import BackendError
 
 OLDEST_LLVM = 17
 _NEWEST_LLVM = 23
 _WHEEL = "karellen-llvm-core"
-_LLVM_ADVICE = (
+LLVM_ADVICE = (
     "install one of LLVM 17 to 23 ('pip install karellen-llvm-core', 'apt install libllvm19' or 'brew install llvm')"
     " or point DRJIT_LIBLLVM_PATH to its libLLVM file"
 )
@@ -107,6 +111,17 @@ def set_threads(requested: int) -> int:
     return granted
 
 
+def upload(values: Float32[np.ndarray, "*shape"] | UInt32[np.ndarray, "*shape"]) -> Any:
+    """Copy an array to the device, flattened: float32 to `mitsuba.Float`, uint32 to `mitsuba.UInt`.
+
+    Always a copy: handed a numpy array, Dr.Jit would only map its memory, whose alignment differs from run to run,
+    compile another kernel for each alignment, and read it element by element where it is not aligned.
+    """
+    mi, dr = modules()
+    kind = mi.Float if values.dtype == np.float32 else mi.UInt
+    return dr.opaque(kind(np.ascontiguousarray(values).reshape(-1)))
+
+
 def affinity() -> int:
     """CPUs this process may run on."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -158,11 +173,11 @@ def _start(variant: str) -> tuple[ModuleType, ModuleType, str]:
     try:
         mi.set_variant(variant)
     except ImportError as error:
-        advice = _LLVM_ADVICE if path or variant.startswith("llvm") else "it needs an NVIDIA GPU and driver"
+        advice = LLVM_ADVICE if path or variant.startswith("llvm") else "it needs an NVIDIA GPU and driver"
         raise BackendError(f"the renderer cannot start '{variant}' here; {advice}") from error
     if variant.startswith("llvm") and dr.detail.llvm_version()[0] < OLDEST_LLVM:
         found = ".".join(map(str, dr.detail.llvm_version()))
-        raise BackendError(f"LLVM {found} is too old for the renderer; {_LLVM_ADVICE}")
+        raise BackendError(f"LLVM {found} is too old for the renderer; {LLVM_ADVICE}")
     dr.set_thread_count(1)
     return mi, dr, path
 
@@ -172,7 +187,7 @@ def _point_to_llvm() -> str:
     own = os.environ.get("DRJIT_LIBLLVM_PATH", "")
     if own:
         if not Path(own).is_file():
-            raise BackendError(f"DRJIT_LIBLLVM_PATH points to '{own}', which is not a file; {_LLVM_ADVICE}")
+            raise BackendError(f"DRJIT_LIBLLVM_PATH points to '{own}', which is not a file; {LLVM_ADVICE}")
         _loadable(Path(own))
         return own
     if "drjit" in sys.modules:

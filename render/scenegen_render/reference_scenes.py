@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from jaxtyping import Float32, UInt32
+from jaxtyping import Float32, Float64, UInt32
 
 from scenegen.classes import Semantic
 from scenegen.climate.season import Season
@@ -180,6 +180,18 @@ def uniform_state(world: World, temperature_K: float, atmosphere: Atmosphere) ->
         temperature_K=np.full(len(world.sites.area), temperature_K, np.float32),
         texture_K=np.zeros(len(world.palette), np.float32),
     )
+
+
+def looking(position_m: Vector, heading_deg: float, pitch_deg: float) -> Float64[np.ndarray, "4 4"]:
+    """`world_from_camera` of a level camera: heading counter-clockwise from east, pitch upwards."""
+    heading, pitch = math.radians(heading_deg), math.radians(pitch_deg)
+    level = math.cos(pitch)
+    forward = np.array([math.cos(heading) * level, math.sin(heading) * level, math.sin(pitch)])
+    right = np.array([math.sin(heading), -math.cos(heading), 0.0])
+    pose = np.eye(4)
+    pose[:3, :3] = np.stack([right, np.cross(forward, right), forward], axis=-1)
+    pose[:3, 3] = position_m
+    return pose
 
 
 def _weather(air: Atmosphere) -> Weather:

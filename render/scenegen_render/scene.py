@@ -39,14 +39,13 @@ class LoadedWorld:
 
     def __init__(self, world: World) -> None:
         _check(world)
-        mi, _ = backend.modules()
         self.world = world
-        self.vertices = mi.Float(np.ascontiguousarray(world.mesh.vertices).reshape(-1))
-        self.faces = mi.UInt(np.ascontiguousarray(world.mesh.faces).reshape(-1))
+        self.vertices = backend.upload(world.mesh.vertices)
+        self.faces = backend.upload(world.mesh.faces)
         self.scene = _scene(self.vertices, self.faces)
-        self.face_record = mi.UInt(_face_record(world).reshape(-1))
-        self.face_object = mi.UInt(world.face_object)
-        self.face_normal = mi.UInt(_packed_normals(world))
+        self.face_record = backend.upload(_face_record(world))
+        self.face_object = backend.upload(world.face_object)
+        self.face_normal = backend.upload(_packed_normals(world))
         self.texture_seed = zlib.crc32(np.ascontiguousarray(world.mesh.vertices).data)
 
     def nearest_site(self, face: Any, uv: Any) -> Any:

@@ -60,7 +60,9 @@ def test_two_processes_render_the_same_bytes():
         " m = u.module_from_spec(s); s.loader.exec_module(m); print(m.digest())"
     )
     command = [sys.executable, "-c", code, __file__]
-    others = [subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip() for _ in range(2)]
+    others = [
+        subprocess.run(command, capture_output=True, text=True, check=True).stdout.strip() for _ in range(2)
+    ]
     assert others == [digest()] * 2
 
 

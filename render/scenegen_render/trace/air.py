@@ -120,7 +120,7 @@ def device_air(atmosphere: Atmosphere, band_um: tuple[float, float], seed: int) 
         attenuation_per_m=opaque(path.attenuation_per_m),
         air_radiance=dr.opaque(mi.Float, path.air_radiance),
         below_radiance=dr.opaque(mi.Float, float(sky_radiance(np.array(-1.0), atmosphere, band_um))),
-        sky=mi.Float(_sky_table(atmosphere, band_um)),
+        sky=backend.upload(_sky_table(atmosphere, band_um)),
         cloud_fraction=dr.opaque(mi.Float, fraction),
         cloud_threshold=dr.opaque(mi.Float, threshold),
         patchy=dr.opaque(mi.Bool, patchy),

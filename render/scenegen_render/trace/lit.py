@@ -78,10 +78,10 @@ def light(
     air_seed = zlib.crc32(repr((world.map, state.season, state.hour, state.weather)).encode())
     return Lit(
         loaded=loaded,
-        face=_face_table(loaded, mi.Float(state.temperature_K), mi.Float(irradiance)),
-        surface=mi.Float(_surface_table(world.palette, state.texture_K)),
-        mirror=mi.Float(_mirror_table(world.palette, band_um)),
-        material=mi.UInt(np.array([s.material.id for s in world.palette], np.uint32)),
+        face=_face_table(loaded, backend.upload(state.temperature_K), backend.upload(irradiance)),
+        surface=backend.upload(_surface_table(world.palette, state.texture_K)),
+        mirror=backend.upload(_mirror_table(world.palette, band_um)),
+        material=backend.upload(np.array([s.material.id for s in world.palette], np.uint32)),
         air=device_air(state.atmosphere, band_um, air_seed),
         texture_seed=dr.opaque(mi.UInt, loaded.texture_seed),
     )

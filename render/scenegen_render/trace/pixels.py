@@ -49,9 +49,5 @@ def image_plane(camera: Camera, pattern: Float64[np.ndarray, "count 2"]) -> Floa
 
 def on_device(plane: Float32[np.ndarray, "rays 2"]) -> Any:
     """The same as a `mitsuba.Vector2f`, evaluated once per tracer."""
-    mi, dr = backend.modules()
-    rays = mi.Vector2f(
-        mi.Float(np.ascontiguousarray(plane[:, 0])), mi.Float(np.ascontiguousarray(plane[:, 1]))
-    )
-    dr.eval(rays)
-    return rays
+    mi, _ = backend.modules()
+    return mi.Vector2f(backend.upload(plane[:, 0]), backend.upload(plane[:, 1]))

@@ -56,7 +56,6 @@ class Sampler:
     """
 
     def __init__(self, camera: Camera, count: int) -> None:
-        mi, dr = backend.modules()
         self.count = count
         self._group = max(k for k in range(1, _LARGEST_GROUP + 1) if count % k == 0)
         self._metre_per_depth = 1.0 / camera.focal_px
@@ -64,11 +63,9 @@ class Sampler:
         self._plane = pixels.on_device(pixels.image_plane(camera, pattern))
         groups = count // self._group
         self._corner = pixels.on_device(pixels.image_plane(camera, np.zeros((groups, 2))))
-        self._offset = mi.Float(np.asarray(pattern / camera.focal_px, np.float32).reshape(-1))
-        self._in_pixel = mi.UInt(
-            np.arange(groups * camera.width_px * camera.height_px, dtype=np.uint32) % groups
-        )
-        dr.eval(self._offset, self._in_pixel)
+        self._offset = backend.upload(np.asarray(pattern / camera.focal_px, np.float32))
+        lanes = groups * camera.width_px * camera.height_px
+        self._in_pixel = backend.upload(np.arange(lanes, dtype=np.uint32) % np.uint32(groups))
 
     def cast(self, lit: Lit, pose: DevicePose) -> Samples:
         """Send every sub-sample and shade what it meets."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float32, Shaped
 
 from scenegen.thermal_state import ThermalState
 from scenegen_render import backend
@@ -113,13 +113,13 @@ class Tracer:
             layers |= {"normal_x": facing.x, "normal_y": facing.y, "normal_z": facing.z}
         return layers
 
-    def _frame(self, layers: dict[str, np.ndarray[Any, Any]]) -> Frame:
+    def _frame(self, layers: dict[str, Shaped[np.ndarray, "pixels"]]) -> Frame:
         shape = (self.camera.height_px, self.camera.width_px)
 
-        def image(name: str) -> np.ndarray[Any, Any]:
+        def image(name: str) -> Shaped[np.ndarray, "rows columns"]:
             return layers[name].reshape(shape)
 
-        def flow(name: str) -> np.ndarray[Any, Any]:
+        def flow(name: str) -> Float32[np.ndarray, "rows columns 2"]:
             return np.stack([image(name + "_u"), image(name + "_v")], axis=-1)
 
         what = image("what")
