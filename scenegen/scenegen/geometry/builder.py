@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import UInt8, UInt16, UInt32
 
-from scenegen.geometry.part import Part, concatenate, face_normals
+from scenegen.geometry.part import Part, concatenate, face_areas
 from scenegen.world import Sites, TriangleMesh
 
 MIN_FACE_AREA_M2 = 1e-6
@@ -54,9 +54,9 @@ class GeometryBuilder:
             If an index is out of range, a number is not finite or a site is shared by two surfaces or objects: a
             mistake in the map's code.
         """
-        part = _without_slivers(concatenate(self._parts))
+        part, face_area = _without_slivers(concatenate(self._parts))
         assert np.isfinite(part.vertices).all() and np.abs(part.vertices).max() < MAX_COORDINATE_M
-        surface, owner, area = _site_labels(part)
+        surface, owner, area = _site_labels(part, face_area)
         return MergedGeometry(
             mesh=TriangleMesh(part.vertices.astype(np.float32), part.faces.astype(np.uint32)),
             face_surface=part.surface.astype(np.uint16),
@@ -74,14 +74,14 @@ class GeometryBuilder:
         )
 
 
-def _without_slivers(part: Part) -> Part:
-    """Drop faces without area, then vertices and sites nobody uses."""
-    _, area = face_normals(part.vertices.astype(np.float32).astype(np.float64), part.faces)
+def _without_slivers(part: Part) -> tuple[Part, np.ndarray]:
+    """Drop faces without area, then vertices and sites nobody uses; returns the areas [m^2] of the faces that stay."""
+    area = face_areas(part.vertices.astype(np.float32).astype(np.float64), part.faces)
     keep = area > MIN_FACE_AREA_M2
     faces, corner_site = part.faces[keep], part.corner_site[keep]
     vertex_used, faces = _compact(faces, len(part.vertices))
     site_used, corner_site = _compact(corner_site, len(part.site_position))
-    return Part(
+    kept = Part(
         vertices=part.vertices[vertex_used],
         faces=faces,
         surface=part.surface[keep],
@@ -92,6 +92,7 @@ def _without_slivers(part: Part) -> Part:
         site_normal=part.site_normal[site_used],
         site_standoff=part.site_standoff[site_used],
     )
+    return kept, area[keep]
 
 
 def _compact(index: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -101,9 +102,8 @@ def _compact(index: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     return used, (np.cumsum(used) - 1)[index]
 
 
-def _site_labels(part: Part) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _site_labels(part: Part, area: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Surface, object and area [m^2] of every site: a third of each face goes to each of its corners."""
-    _, area = face_normals(part.vertices, part.faces)
     corners = part.corner_site.ravel()
     count = len(part.site_position)
     surface = np.zeros(count, np.int64)

@@ -37,7 +37,9 @@ def car(body: str) -> Template:
     def point(x: float, z: float, side: float, inset: float = 0.0) -> list[float]:
         return [x, side * (half - inset), z]
 
-    def strip(a: tuple[float, float], b: tuple[float, float], slot: int, inset_a: float, inset_b: float) -> None:
+    def strip(
+        a: tuple[float, float], b: tuple[float, float], slot: int, inset_a: float, inset_b: float
+    ) -> None:
         quad = [point(*a, -1, inset_a), point(*a, 1, inset_a), point(*b, 1, inset_b), point(*b, -1, inset_b)]
         model.quads(np.array([quad]), slot, Semantic.CAR)
 
@@ -58,7 +60,9 @@ def car(body: str) -> Template:
             glass = glass[:, ::-1]
         site = model.site(np.array([0.0, side * half, 0.6]), np.array([0.0, side, 0.0]))
         model.mesh(ring, fan.astype(np.int64), PAINT, Semantic.CAR, np.full(fan.shape, site))
-        model.quads(_orient(glass, np.array([0.0, side, 0.3])), GLASS if body != "van" else PAINT, Semantic.CAR)
+        model.quads(
+            _orient(glass, np.array([0.0, side, 0.3])), GLASS if body != "van" else PAINT, Semantic.CAR
+        )
     _wheels(model, half, rear)
     return model.finish()
 
@@ -81,5 +85,9 @@ def _wheels(model: Modeller, half: float, rear: float) -> None:
             k, after = np.arange(10), (np.arange(10) + 1) % 10
             tread = np.stack([k, after, after + 10, k + 10], axis=1)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
             disc = 10 + np.stack([np.zeros(8, np.int64), np.arange(1, 9), np.arange(2, 10)], axis=1)
-            faces = np.concatenate([tread if side < 0 else tread[:, ::-1], disc[:, ::-1] if side > 0 else disc])
-            model.mesh(np.concatenate([inner, outer]), faces, RUBBER, Semantic.CAR, np.full(faces.shape, site))
+            faces = np.concatenate(
+                [tread if side < 0 else tread[:, ::-1], disc[:, ::-1] if side > 0 else disc]
+            )
+            model.mesh(
+                np.concatenate([inner, outer]), faces, RUBBER, Semantic.CAR, np.full(faces.shape, site)
+            )

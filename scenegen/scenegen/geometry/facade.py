@@ -75,7 +75,9 @@ class Walls:
     object: Int64[np.ndarray, "walls"]
     recess_m: Float64[np.ndarray, "walls"]
 
-    def cells(self) -> tuple[Int64[np.ndarray, "cells"], Int64[np.ndarray, "cells"], Int64[np.ndarray, "cells"]]:
+    def cells(
+        self,
+    ) -> tuple[Int64[np.ndarray, "cells"], Int64[np.ndarray, "cells"], Int64[np.ndarray, "cells"]]:
         """Wall, column and storey of every cell of the window grids, in the order `facades` expects."""
         return ragged_grid(self.columns, self.storeys)
 
@@ -150,7 +152,11 @@ def _lattice(walls: Walls, normal: np.ndarray) -> _Lattice:
 
     s_item, s_i, s_j = ragged_grid(site_columns, site_rows)
     x = np.minimum(2 * s_i / walls.columns[s_item], 1.0)
-    x = x + np.where(s_i == 0, 0.25, np.where(s_i == site_columns[s_item] - 1, -0.25, 0.0)) / walls.columns[s_item]
+    x = (
+        x
+        + np.where(s_i == 0, 0.25, np.where(s_i == site_columns[s_item] - 1, -0.25, 0.0))
+        / walls.columns[s_item]
+    )
     low, high = np.maximum(2 * s_j - 1, 0), 2 * s_j
     z = (_row_lines(walls, s_item, low) + _row_lines(walls, s_item, high)) / 2
     z = np.where((s_j == 0), 0.15, z)
@@ -162,7 +168,9 @@ def _on_wall(walls: Walls, item: np.ndarray, x: np.ndarray, z: np.ndarray) -> np
     return np.column_stack([xy, walls.floor_m[item] + z])
 
 
-def _quad_filling(walls: Walls, filling: np.ndarray, item: np.ndarray, i: np.ndarray, j: np.ndarray) -> np.ndarray:
+def _quad_filling(
+    walls: Walls, filling: np.ndarray, item: np.ndarray, i: np.ndarray, j: np.ndarray
+) -> np.ndarray:
     """Filling of the window cell a quad lies in; piers and spandrels are blank, the strip below a door is the door."""
     storey = np.clip((j - 2) // 2, 0, walls.storeys[item] - 1)
     column = np.clip((i - 1) // 2, 0, walls.columns[item] - 1)
@@ -204,7 +212,9 @@ def _assemble(
     all_quads = np.concatenate([quads[solid], reveals, inner_id])
     all_sites = np.concatenate([quad_site[solid], reveal_site, pane_site])
     wall_of = np.concatenate([item[solid], np.repeat(owner, 4), owner])
-    labels = np.concatenate([semantic[solid], np.full(4 * count, int(Semantic.WALL)), np.full(count, int(Semantic.WINDOW))])
+    labels = np.concatenate(
+        [semantic[solid], np.full(4 * count, int(Semantic.WALL)), np.full(count, int(Semantic.WINDOW))]
+    )
     skins = np.concatenate([surface[solid], walls.surface[np.repeat(owner, 4)], walls.glass[owner]])
     vertices = np.concatenate([lattice.vertices, inner.reshape(-1, 3)])
     door_middle = lattice.vertices[quads[door]].mean(axis=1)

@@ -38,6 +38,8 @@ class Region:
         True where there is no ground at all: under a building.
     absolute : bool
         True for a level surface: a pond, a flat roof.
+    lumped : bool
+        One thermal site for the whole region: it is too small to have a gradient.
     """
 
     outline: shapely.Polygon
@@ -47,6 +49,7 @@ class Region:
     level_m: float = 0.0
     hole: bool = False
     absolute: bool = False
+    lumped: bool = False
 
 
 def drape(plan: Triangulation, regions: Sequence[Region], relief: Relief) -> Part:
@@ -81,6 +84,7 @@ class _Table:
     level: Float64[np.ndarray, "regions"]
     hole: Bool[np.ndarray, "regions"]
     absolute: Bool[np.ndarray, "regions"]
+    lumped: Bool[np.ndarray, "regions"]
 
     @staticmethod
     def of(regions: Sequence[Region]) -> _Table:
@@ -91,6 +95,7 @@ class _Table:
             np.array([r.level_m for r in regions], np.float64),
             np.array([r.hole for r in regions], bool),
             np.array([r.absolute for r in regions], bool),
+            np.array([r.lumped for r in regions], bool),
         )
 
     def height(self, region: np.ndarray, relief_m: np.ndarray) -> np.ndarray:
@@ -113,7 +118,9 @@ def _surface(
     kinds, kind = np.unique(
         np.stack([table.surface, table.object, level_index], axis=1), axis=0, return_inverse=True
     )
-    codes = triangles.ravel() * len(kinds) + np.repeat(kind.ravel()[region], 3)
+    corner_region = np.repeat(region, 3)
+    codes = triangles.ravel() * len(kinds) + kind.ravel()[corner_region]
+    codes = np.where(table.lumped[corner_region], -1 - corner_region, codes)
     site, corner = np.unique(codes, return_inverse=True)
     corner_site = corner.reshape(-1, 3)
     position, normal = _site_frame(vertices, faces, corner_site, len(site))
@@ -137,8 +144,8 @@ def _site_frame(
     normals, area = face_normals(vertices, faces)
     corners = corner_site.ravel()
     weight = np.repeat(area, 3)
-    position = np.empty((count, 3))
-    position[corners] = vertices[faces.ravel()]
+    position = np.stack([np.bincount(corners, p, count) for p in vertices[faces.ravel()].T], axis=1)
+    position /= np.maximum(np.bincount(corners, minlength=count), 1)[:, None]
     total = np.maximum(np.bincount(corners, weight, count), 1e-12)
 
     def mean(values: np.ndarray) -> np.ndarray:

@@ -34,7 +34,11 @@ class Modeller:
         self._pieces.append((vertices, faces, slot, int(semantic), corner_site))
 
     def quads(
-        self, corners: Float64[np.ndarray, "quads 4 3"], slot: int, semantic: int, standoff_m: float = STANDOFF_M
+        self,
+        corners: Float64[np.ndarray, "quads 4 3"],
+        slot: int,
+        semantic: int,
+        standoff_m: float = STANDOFF_M,
     ) -> None:
         """Add flat quads, counter-clockwise from outside, one site each."""
         count = len(corners)
@@ -45,12 +49,16 @@ class Modeller:
         corner_site = np.repeat(np.repeat(np.array(sites), 2)[:, None], 3, axis=1)
         self.mesh(corners.reshape(-1, 3), faces, slot, semantic, corner_site)
 
-    def box(self, low: tuple[float, float, float], high: tuple[float, float, float], slot: int, semantic: int) -> None:
+    def box(
+        self, low: tuple[float, float, float], high: tuple[float, float, float], slot: int, semantic: int
+    ) -> None:
         """Add an upright box without underside, one site per side."""
         (x0, y0, z0), (x1, y1, z1) = low, high
         p = np.array([[x0, y0, z0], [x1, y0, z0], [x1, y1, z0], [x0, y1, z0]], np.float64)
         corners = np.concatenate([p, p + np.array([0, 0, z1 - z0])])
-        self.quads(corners[[[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 5, 6, 7]]], slot, semantic)
+        self.quads(
+            corners[[[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 5, 6, 7]]], slot, semantic
+        )
 
     def tube(
         self,

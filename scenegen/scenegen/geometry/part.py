@@ -42,7 +42,9 @@ class Part:
     site_normal: Float64[np.ndarray, "sites 3"]
     site_standoff: Float64[np.ndarray, "sites"]
 
-    def labelled(self, surface: int | None = None, semantic: int | None = None, object: int | None = None) -> Part:
+    def labelled(
+        self, surface: int | None = None, semantic: int | None = None, object: int | None = None
+    ) -> Part:
         """The same geometry with one surface, class or instance for all faces."""
         count = len(self.faces)
         return replace(
@@ -63,7 +65,9 @@ def concatenate(parts: Sequence[Part]) -> Part:
         surface=np.concatenate([p.surface for p in parts]),
         semantic=np.concatenate([p.semantic for p in parts]),
         object=np.concatenate([p.object for p in parts]),
-        corner_site=np.concatenate([p.corner_site + offset for p, offset in zip(parts, site[:-1], strict=True)]),
+        corner_site=np.concatenate(
+            [p.corner_site + offset for p, offset in zip(parts, site[:-1], strict=True)]
+        ),
         site_position=np.concatenate([p.site_position for p in parts]),
         site_normal=np.concatenate([p.site_normal for p in parts]),
         site_standoff=np.concatenate([p.site_standoff for p in parts]),
@@ -74,7 +78,23 @@ def face_normals(
     vertices: Float64[np.ndarray, "vertices 3"], faces: Int64[np.ndarray, "faces 3"]
 ) -> tuple[Float64[np.ndarray, "faces 3"], Float64[np.ndarray, "faces"]]:
     """Unit normals and areas [m^2]; a face without area has a zero normal."""
-    a, b, c = (vertices[faces[:, k]] for k in range(3))
-    cross = np.cross(b - a, c - a)
-    length = np.linalg.norm(cross, axis=1)
-    return cross / np.maximum(length, 1e-300)[:, None], 0.5 * length
+    cross = _doubled_area_vectors(vertices, faces)
+    length = np.sqrt((cross**2).sum(axis=0))
+    return (cross / np.maximum(length, 1e-300)).T, 0.5 * length
+
+
+def face_areas(
+    vertices: Float64[np.ndarray, "vertices 3"], faces: Int64[np.ndarray, "faces 3"]
+) -> Float64[np.ndarray, "faces"]:
+    """Areas [m^2]."""
+    return np.asarray(0.5 * np.sqrt((_doubled_area_vectors(vertices, faces) ** 2).sum(axis=0)))
+
+
+def _doubled_area_vectors(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Cross products of two edges, (3, faces): by column, which is several times faster than rows of three."""
+    columns = [np.ascontiguousarray(vertices[:, k]) for k in range(3)]
+    i, j, k = (np.ascontiguousarray(faces[:, n]) for n in range(3))
+    origin = [c[i] for c in columns]
+    ux, uy, uz = (c[j] - o for c, o in zip(columns, origin, strict=True))
+    vx, vy, vz = (c[k] - o for c, o in zip(columns, origin, strict=True))
+    return np.stack([uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx])

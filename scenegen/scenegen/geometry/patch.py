@@ -15,7 +15,10 @@ from scenegen.geometry.ragged import offsets, ragged_grid
 def lattice_quads(
     columns: Int64[np.ndarray, "items"], rows: Int64[np.ndarray, "items"]
 ) -> tuple[
-    Int64[np.ndarray, "cells"], Int64[np.ndarray, "cells"], Int64[np.ndarray, "cells"], Int64[np.ndarray, "cells 4"]
+    Int64[np.ndarray, "cells"],
+    Int64[np.ndarray, "cells"],
+    Int64[np.ndarray, "cells"],
+    Int64[np.ndarray, "cells 4"],
 ]:
     """Item, column, row and the four lattice points (counter-clockwise) of every cell of many lattices.
 
@@ -76,7 +79,12 @@ def patches(
     corner_site, position, site_item = faces, points + (corners.mean(axis=1)[item] - points) * 0.02, item
     if lumped_rows:
         site = offsets(columns)[item] + i
-        middle = np.stack([np.bincount(site, points[:, k]) / rows[np.repeat(np.arange(len(columns)), columns)] for k in range(3)])
+        middle = np.stack(
+            [
+                np.bincount(site, points[:, k]) / rows[np.repeat(np.arange(len(columns)), columns)]
+                for k in range(3)
+            ]
+        )
         corner_site, position, site_item = site[faces], middle.T, np.repeat(np.arange(len(columns)), columns)
     return Part(
         vertices=points,

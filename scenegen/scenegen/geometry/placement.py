@@ -45,7 +45,9 @@ def clear_of(shapes: np.ndarray, obstacles: np.ndarray, gap_m: float = 0.0) -> B
 
 
 def along(
-    line: Float64[np.ndarray, "points 2"], distance_m: Float64[np.ndarray, "items"], offset_m: Float64[np.ndarray, "items"]
+    line: Float64[np.ndarray, "points 2"],
+    distance_m: Float64[np.ndarray, "items"],
+    offset_m: Float64[np.ndarray, "items"],
 ) -> tuple[Float64[np.ndarray, "items 2"], Float64[np.ndarray, "items"]]:
     """Points and headings at distances along a polyline, moved to its right by an offset."""
     step = np.diff(line, axis=0)

@@ -75,7 +75,10 @@ def _node(regions: Sequence[shapely.Polygon]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _spacing(
-    points: np.ndarray, segments: np.ndarray, regions: Sequence[shapely.Polygon], spacing_m: float | np.ndarray
+    points: np.ndarray,
+    segments: np.ndarray,
+    regions: Sequence[shapely.Polygon],
+    spacing_m: float | np.ndarray,
 ) -> np.ndarray:
     """Spacing wanted on each segment: the base one, or a finer one where it lies on a region's outline."""
     wanted = np.broadcast_to(np.asarray(spacing_m, np.float64), (len(regions),))
@@ -123,7 +126,11 @@ def _make_gabriel(
     for _ in range(_ROUNDS):
         middle, radius = _circles(points, segments)
         nearest, _ = cKDTree(fresh).query(middle, distance_upper_bound=float(radius.max()))
-        split = np.zeros(len(segments), bool) if fresh is points else segments.max(axis=1) >= len(points) - len(fresh)
+        split = (
+            np.zeros(len(segments), bool)
+            if fresh is points
+            else segments.max(axis=1) >= len(points) - len(fresh)
+        )
         if split.any():
             nearest[split] = np.minimum(nearest[split], cKDTree(points).query(middle[split])[0])
         bad = (nearest < radius - 1e-7) & (radius > _SHORTEST_M)

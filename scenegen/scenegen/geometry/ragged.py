@@ -6,7 +6,9 @@ import numpy as np
 from jaxtyping import Int64
 
 
-def ragged_arange(counts: Int64[np.ndarray, "items"]) -> tuple[Int64[np.ndarray, "total"], Int64[np.ndarray, "total"]]:
+def ragged_arange(
+    counts: Int64[np.ndarray, "items"],
+) -> tuple[Int64[np.ndarray, "total"], Int64[np.ndarray, "total"]]:
     """For each item 0..count-1: the item it belongs to and the running index inside it."""
     total = int(counts.sum())
     item = np.repeat(np.arange(len(counts)), counts)

@@ -20,10 +20,15 @@ def inset(ring: Float64[np.ndarray, "points 2"], distance_m: float) -> Float64[n
 
 
 def strip(
-    below: Float64[np.ndarray, "points 2"], below_m: float, above: Float64[np.ndarray, "points 2"], above_m: float
+    below: Float64[np.ndarray, "points 2"],
+    below_m: float,
+    above: Float64[np.ndarray, "points 2"],
+    above_m: float,
 ) -> Float64[np.ndarray, "points 4 3"]:
     """Quads between two rings with the same points at two heights, one per edge, facing the right of the first ring."""
     after_below, after_above = np.roll(below, -1, axis=0), np.roll(above, -1, axis=0)
     heights = (below_m, below_m, above_m, above_m)
     plan = (below, after_below, after_above, above)
-    return np.stack([np.column_stack([p, np.full(len(p), h)]) for p, h in zip(plan, heights, strict=True)], axis=1)
+    return np.stack(
+        [np.column_stack([p, np.full(len(p), h)]) for p, h in zip(plan, heights, strict=True)], axis=1
+    )

@@ -10,7 +10,13 @@ from jaxtyping import Float64
 
 
 def hexagonal(
-    x0: float, y0: float, x1: float, y1: float, spacing_m: float, rng: np.random.Generator, jitter: float = 0.18
+    x0: float,
+    y0: float,
+    x1: float,
+    y1: float,
+    spacing_m: float,
+    rng: np.random.Generator,
+    jitter: float = 0.18,
 ) -> Float64[np.ndarray, "points 2"]:
     """Jittered hexagonal lattice over a rectangle.
 
@@ -76,9 +82,15 @@ def contact_points(
     distance_m : float
         Of the row from the outline [m].
     """
-    rows = shapely.boundary(shapely.buffer(np.asarray(outlines, dtype=object), distance_m, join_style="mitre"))
+    rows = shapely.boundary(
+        shapely.buffer(np.asarray(outlines, dtype=object), distance_m, join_style="mitre")
+    )
     points = []
     for row in shapely.get_parts(shapely.get_parts(rows)):
         count = max(int(np.ceil(row.length / spacing_m)), 3)
-        points.append(shapely.get_coordinates(shapely.line_interpolate_point(row, np.arange(count) * row.length / count)))
+        points.append(
+            shapely.get_coordinates(
+                shapely.line_interpolate_point(row, np.arange(count) * row.length / count)
+            )
+        )
     return np.concatenate([np.zeros((0, 2)), *points])

@@ -1,6 +1,6 @@
 """Trees: trunk, branches and a crown of leaf cards around lumpy boughs; broad-leaved and conifer.
 
-A crown has eight sites on an ellipsoid around all its leaves. Rays that leave the ellipsoid outwards never meet the crown
+A crown has six sites on an ellipsoid around all its leaves. Rays that leave the ellipsoid outwards never meet the crown
 again, so no standoff is needed for leaves, and each leaf card takes the site whose direction it lies in.
 """
 
@@ -33,7 +33,7 @@ def _icosahedron() -> np.ndarray:
     return points / np.linalg.norm(points, axis=1)[:, None]
 
 
-def broadleaf(rng: np.random.Generator, boughs: int = 6, cards: int = 64) -> Template:
+def broadleaf(rng: np.random.Generator, boughs: int = 6, cards: int = 52) -> Template:
     """A broad-leaved tree of unit height 1 and crown diameter about 0.75; scale it to size.
 
     Parameters
@@ -77,7 +77,9 @@ def grove(rng: np.random.Generator, boughs: int = 8) -> Template:
     angle = 2.4 * np.arange(boughs)
     for r, a in zip(spread, angle, strict=True):
         size = rng.uniform(0.12, 0.2) * np.array([1, 1, 2.2])
-        lump = ball * rng.uniform(0.75, 1.0, (12, 1)) * size + np.array([r * np.cos(a), r * np.sin(a), 0.45 - 0.3 * r])
+        lump = ball * rng.uniform(0.75, 1.0, (12, 1)) * size + np.array(
+            [r * np.cos(a), r * np.sin(a), 0.45 - 0.3 * r]
+        )
         site = first[0] + np.argmax((lump - centre) @ directions.T, axis=1)
         model.mesh(lump, _ICOSAHEDRON_FACES, 0, Semantic.TREE, site[_ICOSAHEDRON_FACES])
     return model.finish()
@@ -108,17 +110,21 @@ def _crown(
     cards: int,
     card_size: float,
 ) -> None:
-    directions = _fibonacci(8)
-    first = [model.site(centre + d * radii, d / radii) for d in directions]
+    lumps = [
+        middle + _icosahedron() * radius * rng.uniform(0.7, 1.0, (12, 1)) * np.array([1, 1, 0.85])
+        for middle, radius in zip(boughs, size, strict=True)
+    ]
+    corners = _cards(rng, boughs, size, cards, card_size, centre, radii)
+    leaves = np.concatenate([*lumps, corners.reshape(-1, 3)])
+    hull = radii * np.linalg.norm((leaves - centre) / radii, axis=1).max() * 1.001
+    directions = _fibonacci(6)
+    first = [model.site(centre + d * hull, d / hull) for d in directions]
 
     def sites_of(points: np.ndarray) -> np.ndarray:
         return first[0] + np.argmax(((points - centre) / radii) @ directions.T, axis=1)
 
-    ball = _icosahedron()
-    for middle, radius in zip(boughs, size, strict=True):
-        lump = middle + ball * radius * rng.uniform(0.7, 1.0, (12, 1)) * np.array([1, 1, 0.85])
+    for lump in lumps:
         model.mesh(lump, _ICOSAHEDRON_FACES, LEAVES, Semantic.TREE, sites_of(lump)[_ICOSAHEDRON_FACES])
-    corners = _cards(rng, boughs, size, cards, card_size, centre, radii)
     faces = np.arange(4 * cards).reshape(-1, 4)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
     owner = np.repeat(sites_of(corners.mean(axis=1)), 2)
     model.mesh(corners.reshape(-1, 3), faces, LEAVES, Semantic.TREE, np.repeat(owner[:, None], 3, axis=1))

@@ -39,7 +39,9 @@ class MapFamily:
 
 
 _FAMILIES = (
-    MapFamily("city", "dense streets, blocks and parks of a European or American town", CityKnobs, build_city),
+    MapFamily(
+        "city", "dense streets, blocks and parks of a European or American town", CityKnobs, build_city
+    ),
 )
 
 MAPS: Mapping[str, MapFamily] = MappingProxyType({family.name: family for family in _FAMILIES})

@@ -124,7 +124,11 @@ def fit_footprint(
         return None
     k = int(np.argmax(np.where(fits, a * b - 3.0 * back * a, -1e9)))
     origin = np.array([middle[k] - a[k] / 2, back[k]])
-    local = draw_rings(float(a[k]), float(b[k]), rng) if wish.shaped else [rectangle_ring(0, 0, float(a[k]), float(b[k]))]
+    local = (
+        draw_rings(float(a[k]), float(b[k]), rng)
+        if wish.shaped
+        else [rectangle_ring(0, 0, float(a[k]), float(b[k]))]
+    )
     shape = shapely.orient_polygons(polygon_of([r + origin for r in local]))
     rings = tuple(lot.world(shapely.get_coordinates(r)[:-1]) for r in (shape.exterior, *shape.interiors))
     front = lot.world(np.array([[middle[k], back[k]], [middle[k], 0.0]]))

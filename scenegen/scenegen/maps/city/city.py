@@ -34,7 +34,9 @@ def build_city(knobs: CityKnobs, rng: np.random.Generator) -> World:
     rng : numpy.random.Generator
         The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
     """
-    own, streets, hills, skins, lots, parks_rng, ground, walls, gear_rng, cars_rng, posts_rng, green, far = rng.spawn(13)
+    own, streets, hills, skins, lots, parks_rng, ground, walls, gear_rng, cars_rng, posts_rng, green, far = (
+        rng.spawn(13)
+    )
     extent = own.uniform(*knobs.extent_m)
     palette, builder = PaletteBuilder(skins), GeometryBuilder()
     palette.variants("asphalt_aged", 3)  # the fourth is its paint
@@ -44,7 +46,7 @@ def build_city(knobs: CityKnobs, rng: np.random.Generator) -> World:
     parks = {k: plan_park(b.yard, parks_rng) for k, b in enumerate(layout.blocks) if b.use is Use.PARK}
     gear = draw_roof_gear(layout.buildings, gear_rng)
 
-    builder.add(build_terrain(plan, layout, parks, relief, palette, builder, ground))
+    builder.add(build_terrain(plan, layout, parks, knobs, relief, palette, builder, ground))
     builder.add(build_shells(layout.buildings, gear.plans, walls), *gear.parts)
     cars, car_count = build_traffic(plan, layout, knobs, relief, palette, builder, cars_rng)
     furniture, posts = build_furniture(plan, parks, relief, palette, builder, posts_rng)

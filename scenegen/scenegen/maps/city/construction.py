@@ -61,7 +61,12 @@ class Constructor:
         """Draw the world's own values from the knobs."""
         low, high = knobs.storeys
         return Constructor(
-            knobs, relief, palette, builder, rng.uniform(*knobs.tower_share), rng.uniform(0.5 * (low + high), high)
+            knobs,
+            relief,
+            palette,
+            builder,
+            rng.uniform(*knobs.tower_share),
+            rng.uniform(0.5 * (low + high), high),
         )
 
     def on_lot(self, lot: Lot, use: Use, rng: np.random.Generator) -> Building | None:

@@ -98,10 +98,7 @@ def wall_table(buildings: Sequence[Building], rng: np.random.Generator) -> WallT
     low = np.array([c.floor_m - c.foundation_m for c in courses])[index]
     high = np.array([c.top_m for c in courses])[index]
     quads = np.stack(
-        [
-            np.column_stack([p, h])[blank]
-            for p, h in ((start, low), (end, low), (end, high), (start, high))
-        ],
+        [np.column_stack([p, h])[blank] for p, h in ((start, low), (end, low), (end, high), (start, high))],
         axis=1,
     )
     keep = ~blank
@@ -110,7 +107,9 @@ def wall_table(buildings: Sequence[Building], rng: np.random.Generator) -> WallT
     return WallTable(walls, filling, quads, surface[blank], objects[owner[blank]])
 
 
-def _party(start: np.ndarray, end: np.ndarray, owner: np.ndarray, buildings: Sequence[Building]) -> np.ndarray:
+def _party(
+    start: np.ndarray, end: np.ndarray, owner: np.ndarray, buildings: Sequence[Building]
+) -> np.ndarray:
     """Walls that stand against another building."""
     along = (end - start) / np.linalg.norm(end - start, axis=1)[:, None]
     probe = (start + end) / 2 + _PARTY_PROBE_M * np.column_stack([along[:, 1], -along[:, 0]])
@@ -122,7 +121,11 @@ def _party(start: np.ndarray, end: np.ndarray, owner: np.ndarray, buildings: Seq
 
 
 def _walls(
-    courses: Sequence[Course], buildings: Sequence[Building], start: np.ndarray, end: np.ndarray, index: np.ndarray
+    courses: Sequence[Course],
+    buildings: Sequence[Building],
+    start: np.ndarray,
+    end: np.ndarray,
+    index: np.ndarray,
 ) -> Walls:
     styles = [buildings[c.building].style for c in courses]
 

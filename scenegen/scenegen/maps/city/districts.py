@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 import shapely
@@ -13,11 +12,10 @@ from scenegen.geometry.relief import WaveRelief
 from scenegen.maps.city.buildings import Building
 from scenegen.maps.city.construction import Constructor
 from scenegen.maps.city.knobs import CityKnobs
-from scenegen.maps.city.lots import Lot, divide_lots, perimeter_sectors
+from scenegen.maps.city.lots import Lot, divide_lots, perimeter_sectors, row_lots
 from scenegen.maps.city.streets import StreetPlan
 from scenegen.maps.city.uses import LOT_AREA_M2, Use, assign_uses
 from scenegen.materials.palette import PaletteBuilder
-
 
 _CAR_PARK_SHARE = {Use.ESTATE: 0.6, Use.OFFICES: 0.6, Use.INDUSTRY: 1.0}
 
@@ -94,7 +92,8 @@ def _fill(
             chosen = [s for s in sectors if rng.uniform() < 0.93]
             return Block(outline, yard, use, (), (), ()), [constructor.terrace(s, rng) for s in chosen]
         use = Use.ESTATE
-    lots = divide_lots(yard, LOT_AREA_M2[use], rng)
+    homes = use is Use.HOMES
+    lots = row_lots(yard, (13.5, 21.0), rng) if homes else divide_lots(yard, LOT_AREA_M2[use], rng)
     built: list[Building] = []
     empty: list[Lot] = []
     for lot in lots:
@@ -105,7 +104,9 @@ def _fill(
         else:
             built.append(building)
     share = _CAR_PARK_SHARE.get(use, 0.0)
-    paved = tuple(lot for lot in empty if lot.frontage_m > 8.0 and lot.area.area > 250.0 and rng.uniform() < share)
+    paved = tuple(
+        lot for lot in empty if lot.frontage_m > 8.0 and lot.area.area > 250.0 and rng.uniform() < share
+    )
     return Block(outline, yard, use, tuple(lots), tuple(empty), paved), built
 
 

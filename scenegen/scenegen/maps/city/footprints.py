@@ -52,7 +52,9 @@ def rectangle_ring(x0: float, y0: float, length_m: float, depth_m: float) -> Flo
     return np.array([[x0, y0], [x0 + length_m, y0], [x0 + length_m, y0 + depth_m], [x0, y0 + depth_m]])
 
 
-def draw_rings(length_m: float, depth_m: float, rng: np.random.Generator) -> list[Float64[np.ndarray, "points 2"]]:
+def draw_rings(
+    length_m: float, depth_m: float, rng: np.random.Generator
+) -> list[Float64[np.ndarray, "points 2"]]:
     """Outer ring and courtyards of a footprint inside ``[0, length] x [0, depth]``, front at y = 0.
 
     Parameters

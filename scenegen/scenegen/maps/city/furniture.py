@@ -27,7 +27,11 @@ def _lamp() -> Template:
     model.tube(np.array([0, 0, 0.9]), np.array([0, 0, 7.6]), 0.08, 0.055, 0, Semantic.POLE, sides=6, sites=2)
     model.tube(np.array([0, 0, 7.55]), np.array([1.7, 0, 8.0]), 0.05, 0.035, 0, Semantic.POLE, sides=5)
     model.box((1.3, -0.17, 7.95), (2.1, 0.17, 8.09), 0, Semantic.POLE)
-    model.quads(np.array([[[1.3, -0.17, 7.95], [1.3, 0.17, 7.95], [2.1, 0.17, 7.95], [2.1, -0.17, 7.95]]]), 1, Semantic.POLE)
+    model.quads(
+        np.array([[[1.3, -0.17, 7.95], [1.3, 0.17, 7.95], [2.1, 0.17, 7.95], [2.1, -0.17, 7.95]]]),
+        1,
+        Semantic.POLE,
+    )
     return model.finish()
 
 

@@ -68,7 +68,9 @@ def _trees(
     count = len(xy)
     owner = builder.new_objects(count) + np.arange(count)
     broad = rng.uniform(size=count) < 0.82
-    species = np.where(broad, rng.integers(0, _BROADLEAVED, count), _BROADLEAVED + rng.integers(0, _CONIFERS, count))
+    species = np.where(
+        broad, rng.integers(0, _BROADLEAVED, count), _BROADLEAVED + rng.integers(0, _CONIFERS, count)
+    )
     bark = np.array([palette.pick("bark_trunk", rng) for _ in range(count)], np.int64)
     leaves = np.array([palette.pick("tree_crown", rng) for _ in range(count)], np.int64)
     skins = np.column_stack([bark, leaves])
@@ -112,7 +114,9 @@ def _tree_spots(
     for k, block in enumerate(layout.blocks):
         if rng.uniform() < 0.75 and block.use is not Use.INDUSTRY:
             line = shapely.get_coordinates(block.outline.buffer(-1.0, join_style="mitre").exterior)
-            spots = np.arange(6.0, shapely.LineString(line).length - 3.0, rng.uniform(*knobs.street_tree_spacing_m))
+            spots = np.arange(
+                6.0, shapely.LineString(line).length - 3.0, rng.uniform(*knobs.street_tree_spacing_m)
+            )
             places.append(along(line, spots, np.zeros(len(spots)))[0])
             heights.append(rng.uniform(5.0, 8.0) * rng.uniform(0.85, 1.15, len(spots)))
         if k in parks:
@@ -137,12 +141,14 @@ def _hedge_spots(layout: Layout, parks: dict[int, ParkPlan], rng: np.random.Gene
         if block.use not in (Use.HOMES, Use.ESTATE):
             continue
         for lot in block.lots:
-            if lot.frontage_m < 8.0 or rng.uniform() < 0.5:
+            if lot.frontage_m < 8.0 or rng.uniform() < 0.6:
                 continue
             x = np.arange(1.2, lot.frontage_m - 1.2, 1.9)
             plan = lot.world(np.column_stack([x, np.full(len(x), 0.75)]))
             inside = shapely.contains_xy(lot.area.buffer(-0.45), plan)
-            size = np.column_stack([np.full(len(x), 2.1), np.full(len(x), 0.9), rng.uniform(0.9, 1.5) * np.ones(len(x))])
+            size = np.column_stack(
+                [np.full(len(x), 2.1), np.full(len(x), 0.9), rng.uniform(0.9, 1.5) * np.ones(len(x))]
+            )
             rows.append(np.column_stack([plan, np.full(len(x), lot.heading_rad), size])[inside])
     for park in parks.values():
         for bed in park.beds:

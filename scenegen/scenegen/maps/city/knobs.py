@@ -2,65 +2,81 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from scenegen.foundation.section import Number, Section, Span
+
+
+def _within(low: float, high: float) -> Callable[[tuple[float, float]], tuple[float, float]]:
+    """A check that a range stays inside bounds."""
+
+    def check(value: tuple[float, float]) -> tuple[float, float]:
+        if not low <= value[0] <= value[1] <= high:
+            raise ValueError(f"[{value[0]:g}, {value[1]:g}] lies outside {low:g} to {high:g}")
+        return value
+
+    return check
+
+
+Share = Annotated[Span, AfterValidator(_within(0.0, 1.0))]
+"""A range of shares between 0 and 1."""
 
 
 class CityKnobs(Section):
     """Distributions of the city family; every world draws its own values inside them."""
 
-    extent_m: Annotated[Span, Field()] = (715.0, 765.0)
-    """Side of the detailed square [m], 400 to 1,000."""
+    extent_m: Annotated[Span, AfterValidator(_within(400.0, 1000.0))] = (710.0, 750.0)
+    """Square root of the detailed area [m], 400 to 1,000. The ground mesh gets coarser as it grows."""
 
-    block_area_m2: Span = (7000.0, 13000.0)
+    block_area_m2: Annotated[Span, AfterValidator(_within(3000.0, 40000.0))] = (7000.0, 13000.0)
     """Area [m^2] at which the street network stops dividing a block, drawn per block."""
 
-    street_bend_m: Span = (4.0, 16.0)
+    street_bend_m: Annotated[Span, AfterValidator(_within(0.0, 25.0))] = (4.0, 16.0)
     """How far streets bend away from straight lines [m]."""
 
-    building_density: Span = (0.8, 0.97)
-    """Share of building lots that are built on; the rest are yards and car parks."""
+    building_density: Share = (0.8, 0.97)
+    """Share of building lots that are built on; the rest are gardens, yards and car parks."""
 
-    storeys: Span = (2.0, 6.0)
-    """Storeys of ordinary buildings; towers and sheds have their own rules."""
+    storeys: Annotated[Span, AfterValidator(_within(1.0, 12.0))] = (2.0, 6.0)
+    """Storeys of ordinary buildings; houses, towers and sheds have their own rules."""
 
-    tower_share: Span = (0.02, 0.10)
-    """Share of lots with a tower."""
+    tower_share: Annotated[Span, AfterValidator(_within(0.0, 0.25))] = (0.03, 0.10)
+    """Share of towers on housing estates; four times this among offices."""
 
-    tower_storeys: Span = (10.0, 22.0)
-    """Storeys of towers."""
+    tower_storeys: Annotated[Span, AfterValidator(_within(6.0, 30.0))] = (10.0, 22.0)
+    """Storeys of towers, podium included."""
 
-    modern_share: Span = (0.2, 0.6)
-    """Share of buildings after 1960: concrete, flat roofs, wide windows. The rest are brick and render, often pitched."""
+    modern_share: Share = (0.2, 0.6)
+    """Share of the middle of the city built after 1960: office blocks and towers instead of perimeter blocks."""
 
-    industry_share: Span = (0.05, 0.18)
+    industry_share: Share = (0.05, 0.18)
     """Share of blocks given to sheds and workshops."""
 
-    park_area_share: Span = (0.03, 0.07)
+    park_area_share: Annotated[Span, AfterValidator(_within(0.001, 0.5))] = (0.03, 0.07)
     """Share of the detailed area given to parks; at least one block."""
 
-    dry_lawn_share: Span = (0.0, 0.6)
+    dry_lawn_share: Share = (0.0, 0.6)
     """Share of lawns that are not watered."""
 
-    street_tree_spacing_m: Span = (9.0, 18.0)
+    street_tree_spacing_m: Annotated[Span, AfterValidator(_within(5.0, 100.0))] = (11.0, 20.0)
     """Distance between street trees [m] where a street has any."""
 
-    yard_trees_per_1000_m2: Span = (2.0, 6.0)
+    yard_trees_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 15.0))] = (2.0, 4.5)
     """Trees in yards."""
 
-    park_trees_per_1000_m2: Span = (5.0, 10.0)
+    park_trees_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 25.0))] = (5.0, 10.0)
     """Trees in parks."""
 
-    parked_cars_per_100_m: Span = (4.0, 8.0)
+    parked_cars_per_100_m: Annotated[Span, AfterValidator(_within(0.0, 17.0))] = (4.0, 8.0)
     """Parked cars along 100 m of kerb."""
 
-    moving_cars_per_100_m: Span = (0.3, 1.2)
-    """Cars in the lanes, per 100 m of street."""
+    moving_cars_per_100_m: Annotated[Span, AfterValidator(_within(0.0, 10.0))] = (0.3, 1.2)
+    """Cars in each lane, per 100 m of street."""
 
-    relief_m: Span = (0.4, 1.8)
+    relief_m: Annotated[Span, AfterValidator(_within(0.0, 3.0))] = (0.4, 1.8)
     """Amplitude of the terrain [m]."""
 
     flight_ceiling_m: Annotated[Number, Field(ge=30.0, le=300.0)] = 120.0

@@ -41,7 +41,9 @@ class Lot:
         return xy @ np.array([[c, s], [-s, c]]) + self.corner
 
 
-def divide_lots(yard: shapely.Polygon, lot_area_m2: tuple[float, float], rng: np.random.Generator) -> list[Lot]:
+def divide_lots(
+    yard: shapely.Polygon, lot_area_m2: tuple[float, float], rng: np.random.Generator
+) -> list[Lot]:
     """Divide the inner part of a block.
 
     Parameters
@@ -70,6 +72,37 @@ def divide_lots(yard: shapely.Polygon, lot_area_m2: tuple[float, float], rng: np
         else:
             todo.extend(pieces)
     return [_seen_from_street(area, yard) for area in done]
+
+
+def row_lots(yard: shapely.Polygon, width_m: tuple[float, float], rng: np.random.Generator) -> list[Lot]:
+    """Divide a block into two rows of narrow lots, back to back, each with its front to a long side.
+
+    Parameters
+    ----------
+    yard : shapely.Polygon
+        Block without its sidewalk.
+    width_m : (float, float)
+        Range from which the width of the lots is drawn, per row.
+    rng : numpy.random.Generator
+    """
+    corners = shapely.get_coordinates(yard.minimum_rotated_rectangle)
+    sides = np.diff(corners[:3], axis=0)
+    lengths = np.linalg.norm(sides, axis=1)
+    long, short = sides[int(np.argmax(lengths))], sides[int(np.argmin(lengths))]
+    middle = shapely.get_coordinates(yard.centroid)[0]
+    rows = list(split(yard, shapely.LineString([middle - long, middle + long])).geoms)
+    lots = []
+    for row in rows:
+        origin = shapely.get_coordinates(row.minimum_rotated_rectangle.centroid)[0]
+        count = max(int(lengths.max() / rng.uniform(*width_m)), 1)
+        marks = (np.arange(1, count) + rng.uniform(-0.15, 0.15, count - 1)) / count - 0.5
+        pieces = [row]
+        for mark in marks:
+            at = origin + mark * long
+            cut = shapely.LineString([at - short, at + short])
+            pieces = [p for piece in pieces for p in split(piece, cut).geoms]
+        lots += [_seen_from_street(p, yard) for p in pieces if p.area > 60.0]
+    return lots
 
 
 def _seen_from_street(area: shapely.Polygon, yard: shapely.Polygon) -> Lot:
@@ -120,7 +153,10 @@ def perimeter_sectors(
         marks = (np.arange(count + 1) + rng.uniform(-0.12, 0.12, count + 1)) / max(count, 1)
         marks = np.clip(marks, 3.0 / length, 1 - 3.0 / length) if count else np.array([0.5])
         outward = np.array([side[1], -side[0]]) / length * _sign(front)
-        cuts += [shapely.LineString([p - 0.5 * outward, p + 1.6 * depth_m * outward]) for p in a + marks[:, None] * side]
+        cuts += [
+            shapely.LineString([p - 0.5 * outward, p + 1.6 * depth_m * outward])
+            for p in a + marks[:, None] * side
+        ]
     noded = shapely.unary_union([rim.exterior, rim.interiors[0], *cuts], grid_size=0.001)
     pieces = [p for p in polygonize(noded) if rim.contains(p.representative_point())]
     return [shapely.Polygon(p.exterior) for p in pieces]

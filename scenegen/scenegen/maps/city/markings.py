@@ -41,9 +41,7 @@ def _crossing(street: Street, at_m: float, inward: float) -> np.ndarray:
     count = int((street.width_m - 1.4) / _ZEBRA_PITCH_M)
     right = (np.arange(count) - (count - 1) / 2) * _ZEBRA_PITCH_M
     near, far = sorted((at_m, at_m - inward * _ZEBRA_LENGTH_M))
-    zebra = _strips(
-        street, np.full(count, near), np.full(count, far), right, np.full(count, _ZEBRA_STRIPE_M)
-    )
+    zebra = _strips(street, np.full(count, near), np.full(count, far), right, np.full(count, _ZEBRA_STRIPE_M))
     line = at_m - inward * (_ZEBRA_LENGTH_M + 1.2)
     stop = _strips(
         street,

@@ -76,7 +76,11 @@ def far_objects(
     angle = rng.uniform(0.0, 2 * np.pi, count)
     reach = half * 0.85 + 1900.0 * rng.uniform(0.0, 1.0, count) ** 1.7
     centre = np.column_stack([np.cos(angle), np.sin(angle)]) * reach[:, None]
-    heading = 0.5 * np.pi * np.round(rng.uniform(0, 1, count)) + 0.6 * np.sin(2 * angle) + rng.normal(0, 0.06, count)
+    heading = (
+        0.5 * np.pi * np.round(rng.uniform(0, 1, count))
+        + 0.6 * np.sin(2 * angle)
+        + rng.normal(0, 0.06, count)
+    )
     built = rng.uniform(size=count) < 0.55
     length = np.where(built, rng.uniform(11.0, 34.0, count), rng.uniform(14.0, 40.0, count))
     width = np.where(built, rng.uniform(9.0, 18.0, count), length * rng.uniform(0.5, 1.0, count))
@@ -84,9 +88,13 @@ def far_objects(
     roads = shapely.buffer(road_lines(plan), _ROAD_HALF_M + 2.0, cap_style="flat")
     taken = np.array([plan.outline.buffer(8.0), *roads], dtype=object)
     keep = clear_of(shapes, taken) & first_come(shapes)
-    size = np.column_stack([length, width, np.where(rng.uniform(size=count) < 0.08, 28.0, rng.uniform(5.0, 15.0, count))])
+    size = np.column_stack(
+        [length, width, np.where(rng.uniform(size=count) < 0.08, 28.0, rng.uniform(5.0, 15.0, count))]
+    )
     return [
-        _plain_buildings(centre[keep & built], size[keep & built], heading[keep & built], relief, palette, builder, rng),
+        _plain_buildings(
+            centre[keep & built], size[keep & built], heading[keep & built], relief, palette, builder, rng
+        ),
         _groves(centre[keep & ~built], size[keep & ~built], relief, palette, builder, rng),
     ]
 
@@ -102,7 +110,12 @@ def _plain_buildings(
 ) -> Part:
     names = ("stucco_render", "brick_red", "concrete_wall", "concrete_wall")
     wall = np.array([palette.pick(names[int(k)], rng) for k in rng.integers(0, 4, len(centre))])
-    roofs = np.array([palette.pick(("clay_roof_tile", "bitumen_felt_roof")[int(k)], rng) for k in rng.integers(0, 2, len(centre))])
+    roofs = np.array(
+        [
+            palette.pick(("clay_roof_tile", "bitumen_felt_roof")[int(k)], rng)
+            for k in rng.integers(0, 2, len(centre))
+        ]
+    )
     model = Modeller()
     model.box((-0.5, -0.5, 0.0), (0.5, 0.5, 1.0), 0, Semantic.WALL)
     template = model.finish()

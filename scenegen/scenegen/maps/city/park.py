@@ -54,10 +54,16 @@ def plan_park(yard: shapely.Polygon, rng: np.random.Generator) -> ParkPlan:
     hub = centre + rng.uniform(-0.15, 0.15, 2) * reach
     lines = [_winding(hub, angle, yard, reach, rng) for angle in _spokes(rng)]
     walk = yard.buffer(-0.22 * reach).simplify(1.0)
-    outline = shapely.union_all([shapely.LineString(line).buffer(_PATH_HALF_M, quad_segs=3) for line in lines])
+    outline = shapely.union_all(
+        [shapely.LineString(line).buffer(_PATH_HALF_M, quad_segs=3) for line in lines]
+    )
     if walk.geom_type == "Polygon" and walk.area > 400.0:
         outline = outline.union(walk.exterior.buffer(_PATH_HALF_M, quad_segs=3))
-    paved = outline.union(shapely.Point(hub).buffer(rng.uniform(3.0, 6.0))).intersection(yard.buffer(0.3)).simplify(0.15)
+    paved = (
+        outline.union(shapely.Point(hub).buffer(rng.uniform(3.0, 6.0)))
+        .intersection(yard.buffer(0.3))
+        .simplify(0.15)
+    )
     paths = tuple(p for p in getattr(paved, "geoms", [paved]) if p.area > 3.0)
     pond = _pond(yard, paved, rng) if rng.uniform() < 0.75 else None
     beds = tuple(_beds(yard, paved, pond, hub, reach, rng))
@@ -69,7 +75,9 @@ def _spokes(rng: np.random.Generator) -> np.ndarray:
     return 2 * np.pi * (np.arange(count) + rng.uniform(-0.2, 0.2, count)) / count + rng.uniform(0, np.pi)
 
 
-def _winding(hub: np.ndarray, angle: float, yard: shapely.Polygon, reach: float, rng: np.random.Generator) -> np.ndarray:
+def _winding(
+    hub: np.ndarray, angle: float, yard: shapely.Polygon, reach: float, rng: np.random.Generator
+) -> np.ndarray:
     """A gently curved line from the hub across the edge of the park."""
     t = np.linspace(0.0, 2.6 * reach, 24)
     sway = rng.uniform(0.05, 0.12) * reach * np.sin(t / reach * rng.uniform(1.2, 2.2))
@@ -131,7 +139,11 @@ def _benches(lines: list[np.ndarray], yard: shapely.Polygon, rng: np.random.Gene
 
 
 def park_regions(
-    park: ParkPlan, relief: WaveRelief, palette: PaletteBuilder, builder: GeometryBuilder, rng: np.random.Generator
+    park: ParkPlan,
+    relief: WaveRelief,
+    palette: PaletteBuilder,
+    builder: GeometryBuilder,
+    rng: np.random.Generator,
 ) -> list[Region]:
     """Ground of a park on top of its lawn."""
     walk, planted, water = builder.new_objects(), builder.new_objects(), builder.new_objects()

@@ -34,9 +34,20 @@ def _air_handler() -> Template:
     model = Modeller()
     model.box((-0.5, -0.5, 0.12), (0.5, 0.5, 0.85), 0, Semantic.ROOF_EQUIPMENT)
     for x in (-0.25, 0.25):
-        model.tube(np.array([x, 0, 0.8]), np.array([x, 0, 1.0]), 0.17, 0.17, 0, Semantic.ROOF_EQUIPMENT, sides=8)
+        model.tube(
+            np.array([x, 0, 0.8]), np.array([x, 0, 1.0]), 0.17, 0.17, 0, Semantic.ROOF_EQUIPMENT, sides=8
+        )
         model.quads(
-            np.array([[[x - 0.12, -0.12, 0.96], [x + 0.12, -0.12, 0.96], [x + 0.12, 0.12, 0.96], [x - 0.12, 0.12, 0.96]]]),
+            np.array(
+                [
+                    [
+                        [x - 0.12, -0.12, 0.96],
+                        [x + 0.12, -0.12, 0.96],
+                        [x + 0.12, 0.12, 0.96],
+                        [x - 0.12, 0.12, 0.96],
+                    ]
+                ]
+            ),
             1,
             Semantic.ROOF_EQUIPMENT,
         )
@@ -110,7 +121,14 @@ def draw_roof_gear(buildings: Sequence[Building], rng: np.random.Generator) -> R
         position = np.column_stack([centre[mine], height[mine] - 0.02])
         objects = np.array([b.object for b in owners], np.int64)
         parts.append(
-            place(kind.template, position, heading[mine], size[mine], skins.reshape(-1, len(kind.slots)), objects)
+            place(
+                kind.template,
+                position,
+                heading[mine],
+                size[mine],
+                skins.reshape(-1, len(kind.slots)),
+                objects,
+            )
         )
     chimneys = _chimneys(buildings, rng)
     occupied = shapely.buffer(plans[keep], -0.5 * _EDGE_M, join_style="mitre")

@@ -13,7 +13,7 @@ from scenegen.geometry.part import Part, concatenate
 from scenegen.geometry.patch import patches
 from scenegen.geometry.planar import triangulate
 from scenegen.geometry.rings import inset, strip
-from scenegen.maps.city.buildings import Building, Volume, outline_of
+from scenegen.maps.city.buildings import Building, Volume
 from scenegen.maps.city.styles import Roof
 
 PARAPET_WIDTH_M = 0.28
@@ -56,13 +56,17 @@ def flat_roofs(volumes: Storeys, occupied: np.ndarray, rng: np.random.Generator)
         flat = flat_outline(building, volume)
         if flat is not None:
             skin = building.style.roof if volume.form is Roof.FLAT else building.style.cap
-            regions.append(Region(flat[0], skin, int(Semantic.ROOF), building.object, level_m=flat[1], absolute=True))
+            regions.append(
+                Region(flat[0], skin, int(Semantic.ROOF), building.object, level_m=flat[1], absolute=True)
+            )
     outlines = [r.outline for r in regions]
     plan = triangulate(outlines, _lattice(outlines, occupied, rng), _SPACING_M)
     return drape(plan, regions, lambda xy: np.zeros(len(xy)))
 
 
-def _lattice(outlines: Sequence[shapely.Polygon], occupied: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+def _lattice(
+    outlines: Sequence[shapely.Polygon], occupied: np.ndarray, rng: np.random.Generator
+) -> np.ndarray:
     """Points on roofs, not below what stands on them."""
     points = []
     for x0, y0, x1, y1 in shapely.bounds(np.asarray(outlines, dtype=object)):
@@ -87,8 +91,21 @@ def sloped_roofs(volumes: Storeys) -> Part:
             for ring in volume.rings:
                 upper = inset(ring, MANSARD_RUN_M)
                 outer = inset(ring, -0.25)
-                tops.append((strip(ring, base + 0.1, upper, base + MANSARD_RUN_M * style.roof_slope), style.roof, roof, building.object))
-                ledge = np.concatenate([strip(ring, base - 0.15, outer, base - 0.15), strip(outer, base - 0.15, outer, base + 0.1), strip(outer, base + 0.1, ring, base + 0.1)])
+                tops.append(
+                    (
+                        strip(ring, base + 0.1, upper, base + MANSARD_RUN_M * style.roof_slope),
+                        style.roof,
+                        roof,
+                        building.object,
+                    )
+                )
+                ledge = np.concatenate(
+                    [
+                        strip(ring, base - 0.15, outer, base - 0.15),
+                        strip(outer, base - 0.15, outer, base + 0.1),
+                        strip(outer, base + 0.1, ring, base + 0.1),
+                    ]
+                )
                 thin.append((ledge, style.wall, int(Semantic.WALL), building.object))
         elif volume.form in (Roof.GABLE, Roof.HIP):
             slopes, edges, gables = _pitched(volume, building)
@@ -151,7 +168,10 @@ def _pitched(volume: Volume, building: Building) -> tuple[np.ndarray, np.ndarray
             [at(*e[2], low), at(*e[1], low), at(*r[1], high), at(*r[1], high)],
             [at(*e[0], low), at(*e[3], low), at(*r[0], high), at(*r[0], high)],
         ]
-        eaves += [[at(*e[k], low), at(*e[(k + 1) % 4], low), at(*e[(k + 1) % 4], low + t), at(*e[k], low + t)] for k in (1, 3)]
+        eaves += [
+            [at(*e[k], low), at(*e[(k + 1) % 4], low), at(*e[(k + 1) % 4], low + t), at(*e[k], low + t)]
+            for k in (1, 3)
+        ]
         return np.array(top + ends), np.array(under + eaves), np.zeros((0, 4, 3))
     verges = []
     for k, j, end in ((1, 2, r[1]), (3, 0, r[0])):

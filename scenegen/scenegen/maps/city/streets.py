@@ -116,10 +116,11 @@ def draw_streets(
 
 
 def _outline(extent_m: float, rng: np.random.Generator) -> shapely.Polygon:
-    """An irregular octagon of the wanted area."""
-    angle = 2 * np.pi * (np.arange(8) + rng.uniform(-0.28, 0.28, 8)) / 8 + rng.uniform(0.0, np.pi)
-    radius = rng.uniform(0.9, 1.1, 8)
-    ring = np.column_stack([np.cos(angle), np.sin(angle)]) * radius[:, None]
+    """An irregular decagon of the wanted area, about a square with rounded corners."""
+    angle = 2 * np.pi * (np.arange(10) + rng.uniform(-0.3, 0.3, 10)) / 10 + rng.uniform(0.0, np.pi)
+    tilted = angle + rng.uniform(-0.25, 0.25)
+    radius = (np.abs(np.cos(tilted)) ** 3.5 + np.abs(np.sin(tilted)) ** 3.5) ** (-1 / 3.5)
+    ring = np.column_stack([np.cos(angle), np.sin(angle)]) * (radius * rng.uniform(0.95, 1.06, 10))[:, None]
     return shapely.Polygon(ring * (extent_m / np.sqrt(shapely.Polygon(ring).area)))
 
 
@@ -197,7 +198,9 @@ def _links(streets: tuple[Street, ...]) -> list[Link]:
     for k, line in enumerate(lines):
         mark = np.arange(0.5, line.length, 1.0)
         points = shapely.line_interpolate_point(line, mark)
-        other = np.delete(np.arange(len(lines)), k)
+        near = shapely.distance(line, lines) < 30.0
+        near[k] = False
+        other = np.flatnonzero(near)
         gap = shapely.distance(points[:, None], lines[None, other]) - half[None, other]
         clear = np.concatenate([[False], (gap > _CLEAR_OF_JUNCTION_M).all(axis=1), [False]])
         edges = np.flatnonzero(clear[1:] != clear[:-1])

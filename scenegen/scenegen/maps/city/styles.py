@@ -90,7 +90,13 @@ _WALLS = {
     Kind.APARTMENTS: ("stucco_render", "concrete_wall", "brick_red", "stucco_render", "concrete_wall"),
     Kind.OFFICE: ("concrete_wall", "concrete_wall", "stucco_render", "brick_red", "concrete_wall"),
     Kind.TOWER: ("concrete_wall", "concrete_wall", "stucco_render", "concrete_wall", "concrete_wall"),
-    Kind.SHED: ("metal_roof_painted_mid", "concrete_wall", "brick_red", "metal_roof_painted_mid", "stucco_render"),
+    Kind.SHED: (
+        "metal_roof_painted_mid",
+        "concrete_wall",
+        "brick_red",
+        "metal_roof_painted_mid",
+        "stucco_render",
+    ),
 }
 _FLAT_ROOFS = ("bitumen_felt_roof", "epdm_black_roof", "white_membrane_roof", "bitumen_felt_roof")
 _PITCHED_ROOFS = ("clay_roof_tile", "slate_roof", "asphalt_shingle", "clay_roof_tile")

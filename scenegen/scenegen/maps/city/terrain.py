@@ -13,6 +13,7 @@ from scenegen.geometry.planar import triangulate
 from scenegen.geometry.relief import WaveRelief
 from scenegen.geometry.scatter import contact_points, graded_points
 from scenegen.maps.city.districts import Block, Layout
+from scenegen.maps.city.knobs import CityKnobs
 from scenegen.maps.city.markings import marking_quads
 from scenegen.maps.city.outskirts import FAR_M, far_regions
 from scenegen.maps.city.park import ParkPlan, park_regions
@@ -21,8 +22,7 @@ from scenegen.maps.city.uses import Use
 from scenegen.materials.palette import PaletteBuilder
 
 KERB_M = 0.12
-GROUND_SPACING_M = 2.4
-_LINE_SPACING_M = 2.4
+_GROUND_POINTS = 58_000
 _CONTACT_SPACING_M = 1.2
 _TUCK_M = 0.01
 
@@ -31,6 +31,7 @@ def build_terrain(
     plan: StreetPlan,
     layout: Layout,
     parks: dict[int, ParkPlan],
+    knobs: CityKnobs,
     relief: WaveRelief,
     palette: PaletteBuilder,
     builder: GeometryBuilder,
@@ -42,28 +43,37 @@ def build_terrain(
     ----------
     plan, layout, parks
         What was drawn so far; parks by block index.
-    relief : WaveRelief
-    palette, builder
+    knobs, relief, palette, builder
         Of this world.
     rng : numpy.random.Generator
     """
+    dry_share = rng.uniform(*knobs.dry_lawn_share)
     regions = far_regions(plan, palette, builder, rng)
     regions += _streets(plan, palette, builder, rng)
     for k, block in enumerate(layout.blocks):
-        regions += _block_regions(block, layout, palette, builder, rng)
+        regions += _block_regions(block, dry_share, palette, builder, rng)
         if k in parks:
             regions += park_regions(parks[k], relief, palette, builder, rng)
     regions += _paths(layout, palette, builder, rng)
     holes = shapely.union_all([b.footprint for b in layout.buildings]).buffer(-_TUCK_M, join_style="mitre")
     solid = list(getattr(holes, "geoms", [holes]))
     regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in solid]
+    spacing = _ground_spacing(plan, holes)
     half = float(np.abs(plan.outline.bounds).max())
     points = np.concatenate(
-        [contact_points(solid, _CONTACT_SPACING_M, 0.9), graded_points(plan.outline.buffer(3.0), FAR_M, GROUND_SPACING_M, rng)]
+        [
+            contact_points(solid, _CONTACT_SPACING_M, 0.9),
+            graded_points(plan.outline.buffer(3.0), FAR_M, spacing, rng),
+        ]
     )
     outlines = [r.outline for r in regions]
-    spacing = np.array([_CONTACT_SPACING_M if r.hole else _LINE_SPACING_M for r in regions])
-    return drape(triangulate(outlines, points, spacing, (half * 1.05, 0.07)), regions, relief)
+    along = np.array([_CONTACT_SPACING_M if r.hole else 1.05 * spacing for r in regions])
+    return drape(triangulate(outlines, points, along, (half * 1.03, 0.11)), regions, relief)
+
+
+def _ground_spacing(plan: StreetPlan, holes: shapely.Geometry) -> float:
+    """Lattice spacing [m] at which open ground takes about `_GROUND_POINTS` points (a hexagonal lattice: 2/sqrt(3)/s^2)."""
+    return float(np.sqrt(2 / np.sqrt(3) * (plan.outline.area - holes.area) / _GROUND_POINTS))
 
 
 def _streets(
@@ -74,15 +84,15 @@ def _streets(
     marking = builder.new_objects()
     regions = [Region(plan.outline, palette.pick("asphalt_aged", rng), int(Semantic.ROAD), road)]
     quads = shapely.polygons(marking_quads(plan, rng))
-    return regions + [Region(q, paint, int(Semantic.ROAD_MARKING), marking) for q in quads]
+    return regions + [Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True) for q in quads]
 
 
 def _block_regions(
-    block: Block, layout: Layout, palette: PaletteBuilder, builder: GeometryBuilder, rng: np.random.Generator
+    block: Block, dry_share: float, palette: PaletteBuilder, builder: GeometryBuilder, rng: np.random.Generator
 ) -> list[Region]:
     pavement = palette.pick("concrete_pavement", rng)
     regions = [Region(block.outline, pavement, int(Semantic.SIDEWALK), builder.new_objects(), KERB_M)]
-    lawn = palette.pick("grass_watered" if rng.uniform() < 0.65 else "grass_dry", rng)
+    lawn = palette.pick("grass_dry" if rng.uniform() < dry_share else "grass_watered", rng)
     asphalt = palette.pick("asphalt_aged", rng)
     ground, ground_of_cars = builder.new_objects(), builder.new_objects()
     surface, semantic = {
@@ -107,7 +117,9 @@ def _block_regions(
                 continue
             green = lot.area.buffer(-3.5, join_style="mitre").buffer(1.5)
             if green.geom_type == "Polygon" and green.area > 60.0 and rng.uniform() < 0.6:
-                regions.append(Region(green.simplify(0.3), lawn, int(Semantic.GRASS), builder.new_objects(), KERB_M))
+                regions.append(
+                    Region(green.simplify(0.3), lawn, int(Semantic.GRASS), builder.new_objects(), KERB_M)
+                )
     return regions
 
 

@@ -50,7 +50,9 @@ def build_traffic(
     for k, name in enumerate(BODIES):
         mine = np.flatnonzero(body == k)
         scale = size[mine, None] * np.ones(3)
-        parts.append(place(car(name), position[mine], spots[mine, 2], scale, skins[mine], first + mine, slope[mine]))
+        parts.append(
+            place(car(name), position[mine], spots[mine, 2], scale, skins[mine], first + mine, slope[mine])
+        )
     return parts, count
 
 

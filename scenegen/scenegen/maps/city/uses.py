@@ -23,7 +23,6 @@ class Use(StrEnum):
 
 
 LOT_AREA_M2 = {
-    Use.HOMES: (380.0, 700.0),
     Use.ESTATE: (900.0, 1700.0),
     Use.OFFICES: (900.0, 1800.0),
     Use.INDUSTRY: (1300.0, 2600.0),
@@ -50,7 +49,11 @@ def assign_uses(plan: StreetPlan, knobs: CityKnobs, rng: np.random.Generator) ->
     drawn = []
     for k, use in enumerate(uses):
         if use is None:
-            use = Use.INDUSTRY if side[k] > quarter else _inner_use(reach[k] + rng.normal(0.0, 0.09), modern, rng)
+            use = (
+                Use.INDUSTRY
+                if side[k] > quarter
+                else _inner_use(reach[k] + rng.normal(0.0, 0.09), modern, rng)
+            )
         drawn.append(use)
     return drawn
 

@@ -1,0 +1,223 @@
+"""The city: three worlds hold every invariant, the same seed gives the same bytes, other seeds another city."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+import shapely
+from scenegen.classes import Semantic
+from scenegen.foundation.errors import InputError
+from scenegen.foundation.rng import stream
+from scenegen.geometry.part import face_areas, face_normals
+from scenegen.maps.city.knobs import CityKnobs
+from scenegen.maps.registry import MAPS, build_world, map_family
+
+SEEDS = (0, 1, 2)
+GROUND = [
+    Semantic.ROAD, Semantic.SIDEWALK, Semantic.ROAD_MARKING, Semantic.SOIL, Semantic.GRASS, Semantic.WATER,
+]  # fmt: skip
+
+
+@cache
+def build(seed):
+    return build_world("city", CityKnobs(), stream(seed, "city"))
+
+
+@pytest.fixture(scope="module", params=SEEDS)
+def world(request):
+    return build(request.param)
+
+
+def arrays(world):
+    sites = world.sites
+    return [
+        world.mesh.vertices, world.mesh.faces, world.face_surface, world.face_semantic, world.face_object,
+        world.corner_site, sites.position, sites.normal, sites.area, sites.surface, sites.object, sites.standoff,
+        world.ground.height_m,
+    ]  # fmt: skip
+
+
+def corners(world, mask):
+    return world.mesh.vertices[world.mesh.faces[mask]].astype(np.float64)
+
+
+def test_arrays_are_sound(world):
+    for array in arrays(world):
+        assert np.isfinite(array.astype(np.float64)).all()
+    faces = world.mesh.faces.astype(np.int64)
+    assert faces.max() == len(world.mesh.vertices) - 1
+    assert world.corner_site.max() == len(world.sites.area) - 1
+    assert np.abs(world.mesh.vertices).max() < 1e4
+    assert face_areas(world.mesh.vertices.astype(np.float64), faces).min() > 1e-8
+    assert np.linalg.norm(world.sites.normal, axis=1) == pytest.approx(1.0, abs=1e-5)
+    assert world.face_surface.max() < len(world.palette)
+    assert world.face_object.min() >= 1
+    assert (world.sites.area > 0).all()
+
+
+def test_sites_agree_with_their_faces(world):
+    surface = world.sites.surface[world.corner_site]
+    owner = world.sites.object[world.corner_site]
+    assert (surface == world.face_surface[:, None]).all()
+    assert (owner == world.face_object[:, None]).all()
+    near = np.linalg.norm(world.sites.position[world.corner_site] - corners(world, slice(None)), axis=2)
+    detailed = np.abs(corners(world, slice(None))[..., :2]).max(axis=(1, 2)) < 330.0
+    assert np.quantile(near[detailed], 0.99) < 6.0
+
+
+def test_size(world):
+    assert 100_000 < len(world.sites.area) <= 300_000
+    assert 500_000 < len(world.mesh.faces) <= 1_200_000
+    counts = dict(world.counts)
+    assert counts["buildings"] >= 200
+    assert counts["trees"] >= 300
+    assert counts["cars"] >= 200
+    assert counts["parks"] >= 1
+    low, high = (np.array(corner) for corner in world.flight_box_m)
+    assert (high[:2] - low[:2] > 400.0).all()
+    assert high[2] == 120.0
+
+
+def test_classes_and_palette(world):
+    present = np.unique(world.face_semantic)
+    assert len(present) >= 12
+    assert Semantic.SKY not in present
+    names = [s.material.name for s in world.palette]
+    assert max(names.count(n) for n in names) <= 4
+    assert set(np.unique(world.face_surface)) <= set(range(len(world.palette)))
+    for surface in world.palette:
+        low, high = surface.material.emissivity_range
+        assert low <= surface.emissivity <= high
+        if np.isfinite(surface.interior_K):
+            assert 292.0 <= surface.interior_K <= 297.0
+
+
+def test_every_building_is_one_instance_with_walls_roof_and_windows(world):
+    walls = np.unique(world.face_object[world.face_semantic == Semantic.WALL])
+    roofs = np.unique(world.face_object[world.face_semantic == Semantic.ROOF])
+    windows = np.unique(world.face_object[world.face_semantic == Semantic.WINDOW])
+    assert set(roofs) <= set(walls)
+    assert len(windows) >= dict(world.counts)["buildings"] * 0.95
+
+
+def ground_under(world, xy):
+    """How many ground faces a vertical line meets at each point (an independent point-in-triangle count)."""
+    normals, _ = face_normals(world.mesh.vertices.astype(np.float64), world.mesh.faces.astype(np.int64))
+    flat = np.isin(world.face_semantic, GROUND) & (normals[:, 2] > 0.3)
+    tree = shapely.STRtree(shapely.polygons(corners(world, flat)[..., :2]))
+    point, _ = tree.query(shapely.points(xy), predicate="intersects")
+    return np.bincount(point, minlength=len(xy))
+
+
+def test_a_vertical_line_meets_the_ground_once_or_a_building(world):
+    xy = np.random.default_rng(7).uniform(-320.0, 320.0, (4000, 2))
+    xy[:500] *= 7.0
+    layers = ground_under(world, xy)
+    assert layers.max() == 1
+    roofs = np.isin(world.face_semantic, [Semantic.ROOF, Semantic.WALL, Semantic.ROOF_EQUIPMENT, Semantic.WINDOW])
+    tree = shapely.STRtree(shapely.polygons(corners(world, roofs)[..., :2]))
+    open_points = np.flatnonzero(layers == 0)
+    covered = np.unique(tree.query(shapely.points(xy[open_points]), predicate="dwithin", distance=0.02)[0])
+    assert len(covered) == len(open_points)
+
+
+def test_ground_edges_are_shared_by_two_faces_or_meet_a_wall(world):
+    ground = np.isin(world.face_semantic, GROUND)
+    position = np.rint(world.mesh.vertices.astype(np.float64) * 1e3).astype(np.int64)
+    _, merged = np.unique(position, axis=0, return_inverse=True)
+    index = world.mesh.faces[ground][:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
+    edges = np.sort(merged.ravel()[index], axis=1)
+    _, first, count = np.unique(edges, axis=0, return_index=True, return_counts=True)
+    assert (count > 2).sum() == 0
+    rim = world.mesh.vertices[index[first[count == 1]]].mean(axis=1).astype(np.float64)
+    inner = np.abs(rim[:, :2]).max(axis=1) < 2500.0
+    walls = np.isin(world.face_semantic, [Semantic.WALL, Semantic.DOOR])
+    segments = shapely.linestrings(corners(world, walls)[..., :2])
+    near = np.unique(
+        shapely.STRtree(segments).query(shapely.points(rim[inner, :2]), predicate="dwithin", distance=0.03)[0]
+    )
+    assert len(near) == inner.sum()
+
+
+def footprint(world, semantics):
+    """Convex plan of each object of some classes."""
+    mask = np.isin(world.face_semantic, semantics)
+    owner = world.face_object[mask]
+    order = np.argsort(owner, kind="stable")
+    points = corners(world, mask)[order].reshape(-1, 3)
+    start = np.flatnonzero(np.concatenate([[True], np.diff(owner[order]) > 0])) * 3
+    groups = np.split(points, start[1:])
+    return groups, np.array([shapely.MultiPoint(g[:, :2]).convex_hull for g in groups], dtype=object)
+
+
+def test_cars_stand_on_the_ground_and_touch_nothing(world):
+    groups, plans = footprint(world, [Semantic.CAR])
+    pairs = shapely.STRtree(plans).query(plans, predicate="overlaps")
+    assert pairs.shape[1] == 0
+    low = np.array([g[np.argmin(g[:, 2])] for g in groups])
+    height = low[:, 2] - world.ground.at(low[:, :2])
+    assert height.min() > -0.08
+    assert height.max() < 0.30
+    walls = corners(world, world.face_semantic == Semantic.WALL)
+    low_walls = walls[walls[..., 2].min(axis=1) < world.ground.at(walls.mean(axis=1)[:, :2]) + 1.5]
+    lines = shapely.STRtree(shapely.linestrings(low_walls[..., :2]))
+    assert lines.query(plans, predicate="intersects").shape[1] == 0
+
+
+def test_trunks_stand_in_open_ground(world):
+    groups, _ = footprint(world, [Semantic.TREE])
+    feet = np.array([g[np.argmin(g[:, 2])] for g in groups])
+    feet = feet[np.abs(feet[:, :2]).max(axis=1) < 300.0]
+    assert len(feet) > 200
+    assert (np.abs(feet[:, 2] - world.ground.at(feet[:, :2])) < 0.7).all()
+    assert (ground_under(world, feet[:, :2]) == 1).all()
+
+
+def test_ground_faces_look_up_and_walls_keep_their_sites_side(world):
+    normals, _ = face_normals(world.mesh.vertices.astype(np.float64), world.mesh.faces.astype(np.int64))
+    ground = np.isin(world.face_semantic, GROUND)
+    assert normals[ground, 2].min() > -1e-3
+    glass = (world.face_semantic == Semantic.WINDOW)
+    mine = world.sites.normal[world.corner_site[glass][:, 0]]
+    assert np.einsum("ij,ij->i", normals[glass], mine).min() > 0.99
+
+
+def test_the_same_seed_gives_the_same_bytes():
+    first, second = build(0), build.__wrapped__(0)
+    for a, b in zip(arrays(first), arrays(second), strict=True):
+        assert a.tobytes() == b.tobytes()
+    assert repr(first.palette) == repr(second.palette)
+    assert first.counts == second.counts
+
+
+def test_two_seeds_are_two_cities():
+    plans = []
+    for seed in (0, 1):
+        world = build(seed)
+        roofs = corners(world, world.face_semantic == Semantic.ROOF)
+        inner = np.abs(roofs[..., :2]).max(axis=(1, 2)) < 300.0
+        plans.append(shapely.union_all(shapely.polygons(roofs[inner][..., :2]).astype(object), grid_size=0.01))
+    both = plans[0].intersection(plans[1]).area
+    assert both / plans[0].union(plans[1]).area < 0.5
+
+
+def test_knobs_are_honoured():
+    knobs = CityKnobs(
+        parked_cars_per_100_m=0.0, moving_cars_per_100_m=0.0, extent_m=420.0, relief_m=0.0, flight_ceiling_m=80
+    )
+    world = build_world("city", knobs, stream(0, "city"))
+    assert dict(world.counts)["cars"] < 0.4 * dict(build(0).counts)["cars"]
+    assert world.flight_box_m[1][0] < 250.0
+    assert world.flight_box_m[1][2] == 80.0
+    assert np.ptp(world.ground.height_m) == 0.0
+
+
+def test_registry():
+    assert tuple(MAPS) == ("city",)
+    assert map_family("city").knobs is CityKnobs
+    with pytest.raises(InputError, match="perhaps you meant 'city'"):
+        map_family("citty")
+    with pytest.raises(ValueError, match="outside"):
+        CityKnobs(extent_m=(100.0, 5000.0))
