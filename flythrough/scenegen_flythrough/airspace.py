@@ -99,7 +99,8 @@ class Airspace:
         for part in parts(len(points)):
             points[part, 2] -= ground.at(points[part, :2].astype(np.float64))
             self._mark(occupied, points[part])
-        for samples in inner_points(points, mesh.faces, _SAMPLE_CELLS * self.cell_m, _GROUND_M):
+        box = np.array([*self.low[:2], _GROUND_M]), np.array([*self.high[:2], 64 * _LAYER_M])
+        for samples in inner_points(points, mesh.faces, _SAMPLE_CELLS * self.cell_m, box):
             self._mark(occupied, samples)
         return np.packbits(occupied, axis=2, bitorder="little").view("<u8")[:, :, 0].astype(np.uint64)
 

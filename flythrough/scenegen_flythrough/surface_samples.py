@@ -17,20 +17,22 @@ def inner_points(
     points: Float32[np.ndarray, "vertices 3"],
     faces: UInt32[np.ndarray, "faces 3"],
     step_m: float,
-    lowest_m: float,
+    box_m: tuple[Float64[np.ndarray, "3"], Float64[np.ndarray, "3"]],
 ) -> Iterator[Float32[np.ndarray, "samples 3"]]:
-    """Points about a step apart on every triangle that is longer than a step along an axis and rises above a height.
+    """Points about a step apart on every triangle that is longer than a step along an axis and reaches into a box.
 
-    Each triangle is covered by rows parallel to its longest side, so that a tall pane costs its area, not its height
-    squared. Smaller triangles are left out: their corners do.
+    Each large triangle is covered by rows parallel to its longest side, so that a tall pane costs its area, not its
+    height squared. Between one and two steps the middles of the sides do, below one step the corners alone.
 
     Parameters
     ----------
     points : float32 (vertices, 3)
-        Corners; the third coordinate is compared with `lowest_m`.
+        Corners [m].
     faces : uint32 (faces, 3)
-    step_m, lowest_m : float
+    step_m : float
         [m].
+    box_m : (float64 (3,), float64 (3,))
+        Lower and upper corner. Points of a triangle that reaches in may lie outside.
 
     Yields
     ------
@@ -39,11 +41,17 @@ def inner_points(
     """
     for part in parts(len(faces)):
         corners = points[faces[part]]
-        spread = np.maximum(np.maximum(corners[:, 0], corners[:, 1]), corners[:, 2])
-        risen = spread[:, 2] > lowest_m
-        spread -= np.minimum(np.minimum(corners[:, 0], corners[:, 1]), corners[:, 2])
-        large = risen & ((spread[:, 0] > step_m) | (spread[:, 1] > step_m) | (spread[:, 2] > step_m))
-        yield from _rows(corners[large].astype(np.float64), step_m)
+        high = np.maximum(np.maximum(corners[:, 0], corners[:, 1]), corners[:, 2])
+        low = np.minimum(np.minimum(corners[:, 0], corners[:, 1]), corners[:, 2])
+        longest = np.zeros(len(corners), np.float32)
+        inside = np.ones(len(corners), np.bool_)
+        for axis in range(3):
+            longest = np.maximum(longest, high[:, axis] - low[:, axis])
+            inside &= (high[:, axis] > box_m[0][axis]) & (low[:, axis] < box_m[1][axis])
+        medium = corners[inside & (longest > step_m) & (longest <= 2 * step_m)]
+        if len(medium):
+            yield (0.5 * (medium + np.roll(medium, 1, axis=1))).reshape(-1, 3)
+        yield from _rows(corners[inside & (longest > 2 * step_m)].astype(np.float64), step_m)
 
 
 def _rows(

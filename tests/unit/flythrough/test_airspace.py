@@ -8,6 +8,8 @@ import pytest
 from scenegen_flythrough.airspace import ROOM_CELLS, Airspace
 from scenegen_flythrough.surface_samples import inner_points
 
+BOX = (np.array([-100.0, -100.0, 0.5]), np.array([100.0, 100.0, 100.0]))
+
 
 @pytest.fixture(scope="module")
 def tower(build_city) -> Airspace:
@@ -50,7 +52,7 @@ def test_the_ground_is_no_obstacle(hills_air: Airspace) -> None:
 def test_inner_points_cover_a_large_triangle_and_nothing_else() -> None:
     corners = np.array([[0, 0, 0], [30, 0, 0], [0, 0, 40], [0, 0, 0.2], [1, 0, 0.2], [0, 1, 0.2]], np.float32)
     faces = np.array([[0, 1, 2], [3, 4, 5]], np.uint32)
-    samples = np.concatenate(list(inner_points(corners, faces, 1.0, 0.5)))
+    samples = np.concatenate(list(inner_points(corners, faces, 1.0, BOX)))
     assert (samples[:, 1] == 0).all()
     assert (samples[:, 0] / 30 + samples[:, 2] / 40 <= 1 + 1e-6).all()
     assert samples.min() >= -1e-9
@@ -66,6 +68,14 @@ def test_inner_points_of_many_triangles_come_in_batches() -> None:
     corners = rng.uniform(0, 60, (600, 3)).astype(np.float32)
     corners[0:3] = 5.0  # a triangle without size
     faces = np.arange(600, dtype=np.uint32).reshape(-1, 3)
-    batches = list(inner_points(corners, faces, 2.0, 0.0))
+    batches = list(inner_points(corners, faces, 2.0, BOX))
     assert len(batches) > 1
     assert all(np.isfinite(batch).all() and len(batch) for batch in batches)
+
+
+def test_inner_points_skip_what_stays_outside_the_box() -> None:
+    corners = np.array([[0, 0, 0], [30, 0, 0], [0, 0, 40]], np.float32)
+    faces = np.array([[0, 1, 2]], np.uint32)
+    for shift in ([200.0, 0, 0], [0, -101.0, 0], [0, 0, -39.6], [0, 0, 100.0]):
+        assert not sum(len(b) for b in inner_points(corners + np.float32(shift), faces, 1.0, BOX))
+    assert sum(len(b) for b in inner_points(corners + np.float32([0, 0, -39.4]), faces, 1.0, BOX))
