@@ -14,6 +14,8 @@ PAINT, GLASS, RUBBER = 0, 1, 2
 LENGTH_M, WIDTH_M = 4.4, 1.8
 """Size of a car of scale one."""
 
+_RIM = 8
+
 _PROFILES = {
     # x from rear to front, belt height, roof line: (rear screen foot, rear roof, front roof, windscreen foot), bonnet nose
     "saloon": (-2.2, (-1.75, -0.95, 0.35, 1.05), 0.92, 1.43, 0.72),
@@ -75,16 +77,16 @@ def _orient(quads: np.ndarray, outward: np.ndarray) -> np.ndarray:
 
 def _wheels(model: Modeller, half: float, rear: float) -> None:
     site = model.site(np.array([0.0, 0.0, 0.31]), np.array([0.0, 0.0, -1.0]))
-    angle = 2 * np.pi * np.arange(10) / 10
+    angle = 2 * np.pi * np.arange(_RIM) / _RIM
     rim = np.column_stack([np.cos(angle), np.sin(angle)]) * 0.31
     for x in (rear + 0.75, 1.4):
         for side in (-1.0, 1.0):
             y0, y1 = side * (half - 0.2), side * (half + 0.02)
-            inner = np.column_stack([x + rim[:, 0], np.full(10, y0), 0.31 + rim[:, 1]])
-            outer = np.column_stack([x + rim[:, 0], np.full(10, y1), 0.31 + rim[:, 1]])
-            k, after = np.arange(10), (np.arange(10) + 1) % 10
-            tread = np.stack([k, after, after + 10, k + 10], axis=1)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
-            disc = 10 + np.stack([np.zeros(8, np.int64), np.arange(1, 9), np.arange(2, 10)], axis=1)
+            inner = np.column_stack([x + rim[:, 0], np.full(_RIM, y0), 0.31 + rim[:, 1]])
+            outer = np.column_stack([x + rim[:, 0], np.full(_RIM, y1), 0.31 + rim[:, 1]])
+            k, after = np.arange(_RIM), (np.arange(_RIM) + 1) % _RIM
+            tread = np.stack([k, after, after + _RIM, k + _RIM], axis=1)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+            disc = _RIM + np.stack([0 * k[2:], k[1:-1], k[2:]], axis=1)
             faces = np.concatenate(
                 [tread if side < 0 else tread[:, ::-1], disc[:, ::-1] if side > 0 else disc]
             )

@@ -33,7 +33,7 @@ def _icosahedron() -> np.ndarray:
     return points / np.linalg.norm(points, axis=1)[:, None]
 
 
-def broadleaf(rng: np.random.Generator, boughs: int = 6, cards: int = 52) -> Template:
+def broadleaf(rng: np.random.Generator, boughs: int = 6, cards: int = 46) -> Template:
     """A broad-leaved tree of unit height 1 and crown diameter about 0.75; scale it to size.
 
     Parameters
@@ -66,7 +66,7 @@ def conifer(rng: np.random.Generator, tiers: int = 6, cards: int = 60) -> Templa
     return model.finish()
 
 
-def grove(rng: np.random.Generator, boughs: int = 8) -> Template:
+def grove(rng: np.random.Generator, boughs: int = 6) -> Template:
     """A mass of trees of unit diameter and height, for the distance; one slot, four sites."""
     model = Modeller()
     ball = _icosahedron()

@@ -141,7 +141,7 @@ def _hedge_spots(layout: Layout, parks: dict[int, ParkPlan], rng: np.random.Gene
         if block.use not in (Use.HOMES, Use.ESTATE):
             continue
         for lot in block.lots:
-            if lot.frontage_m < 8.0 or rng.uniform() < 0.6:
+            if lot.frontage_m < 8.0 or rng.uniform() < 0.68:
                 continue
             x = np.arange(1.2, lot.frontage_m - 1.2, 1.9)
             plan = lot.world(np.column_stack([x, np.full(len(x), 0.75)]))

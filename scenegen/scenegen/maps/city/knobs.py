@@ -37,7 +37,7 @@ class CityKnobs(Section):
     street_bend_m: Annotated[Span, AfterValidator(_within(0.0, 25.0))] = (4.0, 16.0)
     """How far streets bend away from straight lines [m]."""
 
-    building_density: Share = (0.8, 0.97)
+    building_density: Share = (0.75, 0.95)
     """Share of building lots that are built on; the rest are gardens, yards and car parks."""
 
     storeys: Annotated[Span, AfterValidator(_within(1.0, 12.0))] = (2.0, 6.0)

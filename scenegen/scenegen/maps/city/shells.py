@@ -11,6 +11,7 @@ from scenegen.geometry.facade import facades
 from scenegen.geometry.part import Part, concatenate
 from scenegen.geometry.patch import patches
 from scenegen.geometry.rings import inset, strip
+from scenegen.maps.city.balconies import build_balconies
 from scenegen.maps.city.buildings import Building
 from scenegen.maps.city.courses import wall_table
 from scenegen.maps.city.roofs import PARAPET_WIDTH_M, Storeys, flat_roofs, sloped_roofs
@@ -37,6 +38,7 @@ def build_shells(buildings: Sequence[Building], roof_plans: np.ndarray, rng: np.
     return concatenate(
         [
             facades(table.walls, table.filling),
+            build_balconies(table.walls, table.filling, buildings, rng),
             blank,
             _trim(volumes),
             flat_roofs(volumes, roof_plans, rng),

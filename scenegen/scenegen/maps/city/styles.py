@@ -123,7 +123,7 @@ def draw_style(kind: Kind, form: Roof, palette: PaletteBuilder, rng: np.random.G
         roof_form=form,
         storey_m=storey,
         first_storey_m=first,
-        pitch_m=rng.uniform(5.0, 7.5) if kind is Kind.SHED else rng.uniform(3.3, 4.6),
+        pitch_m=rng.uniform(5.0, 7.5) if kind is Kind.SHED else rng.uniform(3.5, 4.8),
         window_share=rng.uniform(0.5, 0.82) if modern else rng.uniform(0.34, 0.52),
         sill_m=sill,
         head_m=min(sill + rng.uniform(1.3, 1.7), storey - 0.4),

@@ -1,0 +1,76 @@
+"""Balconies before some windows of apartment buildings and towers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from scenegen.classes import Semantic
+from scenegen.geometry.facade import WINDOW, Walls
+from scenegen.geometry.modelling import Modeller
+from scenegen.geometry.part import Part
+from scenegen.geometry.template import Template, place
+from scenegen.maps.city.buildings import Building
+
+_DEPTH_M, _RAIL_M, _SLAB_M, _THICK_M = 1.15, 1.0, 0.14, 0.06
+
+
+def _balcony() -> Template:
+    """Of unit width along +x, projecting to -y from a wall in the plane y = 0, floor at z = 0."""
+    model = Modeller()
+    d, r, s, t = _DEPTH_M, _RAIL_M, _SLAB_M, _THICK_M
+    a, b = -0.5, 0.5
+
+    def side(x: float, turn: int) -> list[list[float]]:
+        quad = [[x, 0, -s], [x, -d, -s], [x, -d, r], [x, 0, r]]
+        return quad[::turn]
+
+    outer = [[[a, -d, -s], [b, -d, -s], [b, -d, r], [a, -d, r]], side(a, 1), side(b, -1)]
+    under = [[[a, 0, -s], [b, 0, -s], [b, -d, -s], [a, -d, -s]]]
+    floor = [[[a, -d, 0], [b, -d, 0], [b, 0, 0], [a, 0, 0]]]
+    inner = [
+        [[b - t, t - d, 0], [a + t, t - d, 0], [a + t, t - d, r], [b - t, t - d, r]],
+        [[a + t, t - d, 0], [a + t, 0, 0], [a + t, 0, r], [a + t, t - d, r]],
+        [[b - t, 0, 0], [b - t, t - d, 0], [b - t, t - d, r], [b - t, 0, r]],
+    ]
+    rim = [
+        [[a, -d, r], [b, -d, r], [b - t, t - d, r], [a + t, t - d, r]],
+        [[a, 0, r], [a, -d, r], [a + t, t - d, r], [a + t, 0, r]],
+        [[b, -d, r], [b, 0, r], [b - t, 0, r], [b - t, t - d, r]],
+    ]
+    for quads in (outer[:1], under, floor, inner[:1]):
+        model.quads(np.array(quads, np.float64), 0, Semantic.BALCONY)
+    shared = np.array(outer[1:] + inner[1:] + rim, np.float64)
+    site = model.site(np.array([0.0, -d, r]), np.array([0.0, -1.0, 1.0]))
+    faces = np.arange(4 * len(shared)).reshape(-1, 4)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
+    model.mesh(shared.reshape(-1, 3), faces, 0, Semantic.BALCONY, np.full(faces.shape, site))
+    return model.finish()
+
+
+def build_balconies(
+    walls: Walls, filling: np.ndarray, buildings: Sequence[Building], rng: np.random.Generator
+) -> Part:
+    """Balconies at every second or third window column of the walls chosen for them, above the ground floor."""
+    wall, column, storey = walls.cells()
+    chosen = np.array([b.object for b in buildings if b.style.balconies], np.int64)
+    length = np.linalg.norm(walls.end - walls.start, axis=1)
+    rhythm, phase = rng.integers(2, 4, len(length)), rng.integers(0, 3, len(length))
+    fits = np.isin(walls.object, chosen) & (length / walls.columns > 2.4) & (length > 9.0)
+    fits &= rng.uniform(size=len(length)) < 0.6
+    here = fits[wall] & (storey > 0) & (filling == WINDOW) & ((column + phase[wall]) % rhythm[wall] == 0)
+    wall, column, storey = wall[here], column[here], storey[here]
+    along = (walls.end - walls.start) / length[:, None]
+    middle = walls.start[wall] + along[wall] * ((column + 0.5) / walls.columns[wall] * length[wall])[:, None]
+    floor = walls.floor_m[wall] + walls.first_storey_m[wall] + (storey - 1) * walls.storey_m[wall]
+    heading = np.arctan2(along[wall, 1], along[wall, 0])
+    width = np.minimum(0.86 * length[wall] / walls.columns[wall], 3.6)
+    ones = np.ones(len(wall))
+    return place(
+        _balcony(),
+        np.column_stack([middle, floor]),
+        heading,
+        np.column_stack([width, ones, ones]),
+        walls.surface[wall][:, None],
+        walls.object[wall],
+    )
