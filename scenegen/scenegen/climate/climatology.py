@@ -77,7 +77,7 @@ class Normals:
             + self.spread_K * float(np.clip(for_mean.standard_normal(), -2.2, 2.2)),
             air_amplitude_K=float(amplitude),
             dew_point_depression_K=float(np.clip(dryness_K * for_dew.standard_exponential(), 0.0, 20.0)),
-            wind_mps=float(np.clip(3.95 * for_wind.weibull(2.0), 0.3, 12.0)),  # mean 3.5 m/s
+            wind_mps=float(np.clip(3.95 * for_wind.weibull(2.0), 1.0, 12.0)),  # mean 3.5 m/s
             cloud_fraction=cloud,
             linke_turbidity=turbidity,
             visibility_km=float(np.clip(280.0 / turbidity**2 * for_view.uniform(0.7, 1.5), 5.0, 80.0)),

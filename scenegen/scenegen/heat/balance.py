@@ -19,8 +19,6 @@ from scenegen.radiometry.planck import STEFAN_BOLTZMANN
 SAMPLES = 144
 """Instants of the periodic day: every ten minutes."""
 _STEPS = 60
-_TOLERANCE_K = 2e-3
-_LOW_K, _HIGH_K = 150.0, 700.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,6 +107,7 @@ def solve_day(
     skins: Skins,
     air: Air,
     start_K: Float64[np.ndarray, "surfaces samples"] | None = None,
+    tolerance_K: float = 2e-3,
 ) -> DaySolution:
     """Periodic temperatures of many surfaces.
 
@@ -125,22 +124,29 @@ def solve_day(
     air : Air
     start_K : float64 (surfaces, samples), optional
         First guess; air temperature otherwise.
+    tolerance_K : float
+        Largest change in the last step.
     """
     samples = absorbed_Wm2.shape[1]
     T = np.array(np.broadcast_to(air.temperature_K if start_K is None else start_K, absorbed_Wm2.shape))
-    worst, steps = np.inf, 0
-    while steps < _STEPS:
-        steps += 1
+    spectrum = np.fft.rfft(T)
+    gained = absorbed_Wm2 + inner_Wm2
+    for steps in range(1, _STEPS + 1):  # noqa: B007
         lost, slope = surface_losses(T, skins, air)
-        conducted = np.fft.irfft(admittance * np.fft.rfft(T), n=samples)
-        residual = absorbed_Wm2 + inner_Wm2 - lost - conducted
-        worst = float(np.abs(residual).max(initial=0.0))
-        stiffness = 0.5 * (slope.max(axis=1) + slope.mean(axis=1))
-        move = np.fft.irfft(np.fft.rfft(residual) / (stiffness[:, None] + admittance), n=samples)
-        T = np.clip(T + move, _LOW_K, _HIGH_K)
-        if float(np.abs(move).max(initial=0.0)) < _TOLERANCE_K:
+        stiffness = 0.5 * (slope.max(axis=1) + slope.mean(axis=1))[:, None]
+        residual = np.fft.rfft(gained - lost) - admittance * spectrum
+        spectrum += residual * _reciprocal(stiffness + admittance)
+        T, before = np.fft.irfft(spectrum, n=samples), T
+        if float(np.abs(T - before).max(initial=0.0)) < tolerance_K:
             break
-    return DaySolution(T, loss_slope(T, skins, air), worst, steps)
+    lost, _ = surface_losses(T, skins, air)
+    left = gained - lost - np.fft.irfft(admittance * spectrum, n=samples)
+    return DaySolution(T, loss_slope(T, skins, air), float(np.abs(left).max(initial=0.0)), steps)
+
+
+def _reciprocal(z: Complex128[np.ndarray, "*shape"]) -> Complex128[np.ndarray, "*shape"]:
+    """``1 / z`` without numpy's careful scaling, three times faster; our numbers are of ordinary size."""
+    return np.asarray(np.conj(z) / (z.real**2 + z.imag**2))
 
 
 def loss_slope(

@@ -114,9 +114,8 @@ class ClassDays:
         for _ in range(_EXCHANGES):
             short, long = mean_irradiance(outlook, neighbours, day)
             absorbed = _absorbed(traits, short, long, day.direct_Wm2 * beam)
-            guess = _bounded(
-                solve_day(absorbed, inner, Y, traits.skins, day.air, guess).temperature_K, traits
-            )
+            means = solve_day(absorbed, inner, Y, traits.skins, day.air, guess, tolerance_K=0.02)
+            guess = _bounded(means.temperature_K, traits)
             neighbours = Neighbours.of(
                 day,
                 outlook.membership,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float32, Float64, Int64
 
+from scenegen.materials.material import Build
 from scenegen.world import World
 
 WALL_AZIMUTHS = 16
@@ -50,7 +51,7 @@ class ThermalClasses:
     def of(world: World) -> ThermalClasses:
         """Classes that occur in a world, by palette index, then orientation."""
         sites = world.sites
-        key = sites.surface.astype(np.int64) * ORIENTATIONS + orientation_bin(sites.normal)
+        key = sites.surface.astype(np.int64) * ORIENTATIONS + site_orientations(world)
         present, member = np.unique(key, return_inverse=True)
         count = present.size
         weight = sites.area.astype(np.float64) + 1e-9  # a site without area still belongs somewhere
@@ -75,6 +76,32 @@ class ThermalClasses:
     def members(self, index: int) -> Int64[np.ndarray, "members"]:
         """Sites of one class."""
         return self.order[self.start[index] : self.start[index + 1]]
+
+
+def site_orientations(world: World) -> Int64[np.ndarray, "sites"]:
+    """Orientation bin of each site: fine for buildings, one of ten for everything smaller.
+
+    Crowns, cars, trunks and kerbs have all directions; a quarter turn is near enough for them, because every site
+    keeps its own sun and only the shape of the class's day is shared.
+    """
+    fine = orientation_bin(world.sites.normal)
+    small = np.array([s.material.build not in _BUILDING for s in world.palette], dtype=bool)
+    return np.where(small[world.sites.surface], _QUARTERS[fine], fine)
+
+
+def _quarters() -> Int64[np.ndarray, "orientations"]:
+    """For each bin the one that stands for its quarter of the compass; both steepnesses of slopes together."""
+    bins = np.arange(ORIENTATIONS)
+    for o in range(FIRST_SLOPE, FIRST_WALL):
+        bins[o] = FIRST_SLOPE + ((o - FIRST_SLOPE) % SLOPE_AZIMUTHS + 1) // 2 % 4 * 2
+    for o in range(FIRST_WALL, ORIENTATIONS):
+        per = WALL_AZIMUTHS // 4
+        bins[o] = FIRST_WALL + (o - FIRST_WALL + per // 2) // per % 4 * per
+    return bins
+
+
+_QUARTERS = _quarters()
+_BUILDING = frozenset({Build.WALL_INSULATED, Build.WINDOW, Build.ROOF_INSULATED, Build.ROOF_VENTILATED})
 
 
 def orientation_bin(normal: Float32[np.ndarray, "sites 3"]) -> Int64[np.ndarray, "sites"]:

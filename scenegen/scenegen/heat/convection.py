@@ -24,7 +24,7 @@ def natural_convection(
         Vertical component of the outward normal: 1 a roof, 0 a wall, -1 a ceiling. A warm surface facing up, or a
         cold one facing down, stirs the air; the switch between the two branches is smoothed over half a kelvin.
     """
-    drive = np.sqrt(excess_K**2 + _SMOOTH_DT_K2) ** (1.0 / 3.0)
+    drive = np.cbrt(np.sqrt(excess_K**2 + _SMOOTH_DT_K2))
     tilt = np.abs(cos_tilt)
     unstable = 9.482 * drive / (7.283 - tilt)
     stable = 1.810 * drive / (1.382 + tilt)

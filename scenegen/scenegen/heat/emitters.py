@@ -11,7 +11,15 @@ from enum import IntEnum
 import numpy as np
 from jaxtyping import Int64, UInt8
 
-from scenegen.heat.classes import DOWN, FIRST_SLOPE, FIRST_WALL, ORIENTATIONS, SLOPE_AZIMUTHS, orientation_bin
+from scenegen.heat.classes import (
+    DOWN,
+    FIRST_SLOPE,
+    FIRST_WALL,
+    ORIENTATIONS,
+    SLOPE_AZIMUTHS,
+    WALL_AZIMUTHS,
+    site_orientations,
+)
 from scenegen.materials.material import Build, Surface
 from scenegen.world import World
 
@@ -42,7 +50,7 @@ _DARK_ABSORPTANCE = 0.75
 def group_sites(world: World) -> tuple[UInt8[np.ndarray, "sites"], int]:
     """Emitter group of each site, and the number of groups (always `EMITTER_GROUPS`)."""
     table = np.array([[group(s, o) for o in range(ORIENTATIONS)] for s in world.palette], dtype=np.uint8)
-    return table[world.sites.surface, orientation_bin(world.sites.normal)], EMITTER_GROUPS
+    return table[world.sites.surface, site_orientations(world)], EMITTER_GROUPS
 
 
 def group_classes(
@@ -70,12 +78,9 @@ def group(surface: Surface, orientation: int) -> int:
     if orientation == DOWN:
         return _First.UNDERSIDE
     if orientation >= FIRST_WALL:
-        sector = orientation - FIRST_WALL
-        return (
-            _First.WINDOW + (sector + 2) // 4 % 4
-            if build is Build.WINDOW
-            else _First.WALL + (sector + 1) // 2 % 8
-        )
+        if build is Build.WINDOW:
+            return _First.WINDOW + _sector(orientation - FIRST_WALL, WALL_AZIMUTHS, 4)
+        return _First.WALL + _sector(orientation - FIRST_WALL, WALL_AZIMUTHS, 8)
     return _level_group(surface, orientation)
 
 
@@ -89,5 +94,10 @@ def _level_group(surface: Surface, orientation: int) -> int:
         return _First.DARK_GROUND if dark else _First.PALE_GROUND
     if orientation < FIRST_SLOPE:
         return _First.FLAT_ROOF
-    sector = (orientation - FIRST_SLOPE) % SLOPE_AZIMUTHS
-    return _First.SLOPED_ROOF + (sector + 1) // 2 % 4
+    return _First.SLOPED_ROOF + _sector((orientation - FIRST_SLOPE) % SLOPE_AZIMUTHS, SLOPE_AZIMUTHS, 4)
+
+
+def _sector(azimuth: int, fine: int, coarse: int) -> int:
+    """Coarse sector of the compass, centred on north, that a fine one belongs to."""
+    per = fine // coarse
+    return (azimuth + per // 2) // per % coarse

@@ -12,7 +12,6 @@ from scenegen.heat.balance import DaySolution
 from scenegen.heat.class_days import ClassDays
 from scenegen.heat.forcing import Day
 from scenegen.heat.outlook import Outlook, single
-from scenegen.heat.shadow import memory
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,15 +40,15 @@ class Expansion:
     @staticmethod
     def of(
         solution: DaySolution,
+        felt: Float64[np.ndarray, "classes samples"],
         cos_sun: Float64[np.ndarray, "classes samples"],
         days: ClassDays,
         day: Day,
         outlook: Outlook,
         sun_hour: Float64[np.ndarray, "times"],
     ) -> Expansion:
-        """Expand around class solutions that were made with the beam ``direct * cos_sun``."""
+        """Expand around class solutions that were made with the beam ``direct * cos_sun``; `felt` is their memory."""
         traits, near = days.traits, days.neighbours
-        felt = memory(solution.slope_Wm2K, days.admittance)
         short, long = traits.absorptance[:, None] * felt, traits.skins.emissivity[:, None] * felt
         beam = short * traits.direct_factor[:, None] * day.direct_Wm2
         ground = _felt(short, day.ground_short_Wm2[None]) + _felt(long, day.ground_long_Wm2[None])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float32
+from jaxtyping import Float32, Float64
 
 from scenegen.climate.humidity import dew_point_K
 from scenegen.climate.season import Season
@@ -52,8 +52,11 @@ class HeatModel:
         exposure = self.exposure
         day = Day.of(exposure.season, weather, hour)
         days = ClassDays.of(self.classes, self.world.palette, self.outlook, exposure.sun_hour, weather, day)
-        lit = Expansion.of(days.lit, days.cos_sun, days, day, self.outlook, exposure.sun_hour)
-        shaded = Expansion.of(days.shaded, 0.0 * days.cos_sun, days, day, self.outlook, exposure.sun_hour)
+        felt_lit = memory(days.lit.slope_Wm2K, days.admittance)
+        felt_shaded = memory(days.shaded.slope_Wm2K, days.admittance)
+        sun, seen = days.cos_sun, (days, day, self.outlook, exposure.sun_hour)
+        lit = Expansion.of(days.lit, felt_lit, sun, *seen)
+        shaded = Expansion.of(days.shaded, felt_shaded, 0.0 * sun, *seen)
         temperature = np.empty(self.world.sites.area.size, dtype=np.float32)
         for c in range(self.classes.palette.size):
             sites = self.classes.members(c)
@@ -68,14 +71,16 @@ class HeatModel:
             weather=weather,
             atmosphere=weather.atmosphere(hour),
             temperature_K=temperature,
-            texture_K=self._texture(days, day),
+            texture_K=self._texture(days, day, felt_lit),
         )
 
-    def _texture(self, days: ClassDays, day: Day) -> Float32[np.ndarray, "palette"]:
+    def _texture(
+        self, days: ClassDays, day: Day, felt: Float64[np.ndarray, "classes samples"]
+    ) -> Float32[np.ndarray, "palette"]:
         """Texture amplitude of each palette entry now: area mean over its classes."""
         short, _ = mean_irradiance(self.outlook, days.neighbours, day)
         short = short + day.direct_Wm2 * self.outlook.beam_over(day, self.exposure.sun_hour)
-        solar = solar_memory(memory(days.lit.slope_Wm2K, days.admittance), short)
+        solar = solar_memory(felt, short)
         entries = len(self.world.palette)
         area = np.bincount(self.classes.palette, weights=self.classes.area_m2, minlength=entries)
         total = np.bincount(
