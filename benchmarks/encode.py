@@ -70,20 +70,27 @@ def tiff(compression: int, predictor: int) -> Callable[[Shot], bytes]:
     return lambda shot: bytes(cv2.imencode(".tiff", shot[0].depth, options)[1])
 
 
-def exr(kind: str, threads: int = 0) -> Callable[[Shot], bytes]:
+def truth(shot: Shot) -> dict[str, Any]:
+    frame = shot[0]
+    return {
+        "radiance": frame.radiance,
+        "temperature": frame.temperature,
+        "semantic": frame.semantic.astype(np.uint32),
+        "instance": frame.instance,
+        "material": frame.material.astype(np.uint32),
+        "covisible": frame.covisible.astype(np.float16),
+    }
+
+
+def flow(shot: Shot) -> dict[str, Any]:
+    return {name: np.ascontiguousarray(shot[0].flow[..., k]) for k, name in enumerate("uv")}
+
+
+def exr(kind: str, planes: Callable[[Shot], dict[str, Any]] = truth) -> Callable[[Shot], bytes]:
     def encode(shot: Shot) -> bytes:
-        frame = shot[0]
-        planes = {
-            "radiance": frame.radiance,
-            "temperature": frame.temperature,
-            "semantic": frame.semantic.astype(np.uint32),
-            "instance": frame.instance,
-            "material": frame.material.astype(np.uint32),
-            "covisible": frame.covisible.astype(np.float16),
-        }
         header = {"compression": getattr(OpenEXR, kind), "type": OpenEXR.scanlineimage}
         buffer = io.BytesIO()
-        OpenEXR.File(header, planes, threads).write(buffer)
+        OpenEXR.File(header, planes(shot), 0).write(buffer)
         return buffer.getvalue()
 
     return encode
@@ -100,8 +107,12 @@ def choices() -> dict[str, Callable[[Shot], bytes]]:
         "thermal PNG level 1, RLE, SUB *": png(cv2.IMWRITE_PNG_STRATEGY_RLE, cv2.IMWRITE_PNG_FILTER_SUB),
         "thermal PNG level 1, RLE, PAETH": png(cv2.IMWRITE_PNG_STRATEGY_RLE, cv2.IMWRITE_PNG_FILTER_PAETH),
         "depth TIFF deflate": tiff(8, 1),
-        "depth TIFF deflate, predictor 3 *": tiff(8, 3),
-        "depth TIFF LZW, predictor 3": tiff(5, 3),
+        "depth TIFF deflate, predictor 3": tiff(8, 3),
+        "depth TIFF LZW, predictor 3 *": tiff(5, 3),
+        "flow EXR none *": exr("NO_COMPRESSION", flow),
+        "flow EXR RLE": exr("RLE_COMPRESSION", flow),
+        "flow EXR ZIP": exr("ZIP_COMPRESSION", flow),
+        "flow EXR PIZ": exr("PIZ_COMPRESSION", flow),
         "truth EXR none": exr("NO_COMPRESSION"),
         "truth EXR RLE": exr("RLE_COMPRESSION"),
         "truth EXR ZIPS": exr("ZIPS_COMPRESSION"),

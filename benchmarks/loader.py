@@ -69,7 +69,7 @@ def decode_only(root: Path, order: Sequence[int]) -> float:
     """What cv2 alone needs for thermal and depth: the floor."""
     pairs = PairDataset(root, allow_partial=True)
     some = [pairs[i] for i in order[:16]]
-    options = [cv2.IMWRITE_TIFF_COMPRESSION, 8, cv2.IMWRITE_TIFF_PREDICTOR, 3]
+    options = [cv2.IMWRITE_TIFF_COMPRESSION, 5, cv2.IMWRITE_TIFF_PREDICTOR, 3]
     coded = []
     for s in some:
         png_options = [cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_RLE]

@@ -89,6 +89,9 @@ LAYERS: dict[str, Layer] = {
 MEMBERS = ("thermal.png", "depth.tiff", "flow.exr", "truth.exr", "flow_back.exr", "normal.exr", "json")
 """Suffixes of a frame's members in the order they stand in the shard."""
 
+UNCOMPRESSED = ("flow.exr",)
+"""EXR members that are stored as they are, because compression costs much and saves little."""
+
 MAX_COUNT = 16383
 """Largest count of the 14-bit scale."""
 

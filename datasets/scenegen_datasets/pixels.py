@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from scenegen.foundation.errors import CorruptFrameError
 from scenegen_datasets.codecs import exr, png, tiff
-from scenegen_datasets.layers import Layer
+from scenegen_datasets.layers import UNCOMPRESSED, Layer
 
 Arrays = Mapping[str, NDArray[Any]]
 """Layer name to array."""
@@ -39,7 +39,7 @@ def encode_member(suffix: str, layers: Iterable[Layer], arrays: Arrays) -> bytes
             c: plane.astype(layer.stored, copy=False) for c, plane in zip(layer.channels, planes, strict=True)
         }
     units = {f"unit.{c}": layer.unit for layer in chosen for c in layer.channels}
-    return exr.encode(channels, units)
+    return exr.encode(channels, units, zipped=suffix not in UNCOMPRESSED)
 
 
 def decode_member(

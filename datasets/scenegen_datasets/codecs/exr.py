@@ -1,8 +1,9 @@
-"""Everything else: scan-line OpenEXR with ZIP compression, named channels, units in the header.
+"""Everything else: scan-line OpenEXR with named channels and units in the header.
 
-ZIP (16 rows a block, one thread) is the fastest of the lossless kinds that every reader knows: PIZ costs 3 times the
-processor time, single-row ZIPS 1.5 to 2 times, RLE halves the time and doubles the bytes (``benchmarks/encode.py``).
-OpenEXR stores uint32, half and float32 only, so small integers travel as uint32 and are narrowed on reading.
+ZIP (16 rows a block, one thread) is the fastest of the lossless kinds that shrink anything and that every reader knows:
+PIZ costs 3 times the processor time, single-row ZIPS 1.3 times, RLE saves a third and doubles the bytes. Flow is stored
+as it is: its mantissas are noise to a compressor, which takes 10 times as long to save a quarter
+(``benchmarks/encode.py``). OpenEXR stores uint32, half and float32 only, so small integers travel as uint32.
 """
 
 from __future__ import annotations
@@ -19,11 +20,13 @@ from scenegen.foundation.errors import CorruptFrameError
 
 _MAGIC = b"v/1\x01\x02\x00\x00\x00"
 _PIXEL_TYPES = (np.dtype(np.uint32), np.dtype(np.float16), np.dtype(np.float32))
-_ZIP = 3
+_KINDS = (b"\x00", b"\x03")  # NO_COMPRESSION and ZIP_COMPRESSION, as the header spells them
 _MAX_HEADER_BYTES = 1 << 16
 
 
-def encode(channels: Mapping[str, NDArray[Any]], attributes: Mapping[str, str]) -> bytes:
+def encode(
+    channels: Mapping[str, NDArray[Any]], attributes: Mapping[str, str], *, zipped: bool = True
+) -> bytes:
     """Encode planes of one shape; OpenEXR sorts channels and attributes by name.
 
     Parameters
@@ -32,10 +35,13 @@ def encode(channels: Mapping[str, NDArray[Any]], attributes: Mapping[str, str]) 
         uint32, float16 or float32.
     attributes : mapping of str to str
         Text for the header, e.g. units.
+    zipped : bool
+        Whether to compress.
     """
     import OpenEXR
 
-    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, **attributes}
+    kind = OpenEXR.ZIP_COMPRESSION if zipped else OpenEXR.NO_COMPRESSION
+    header = {"compression": kind, "type": OpenEXR.scanlineimage, **attributes}
     planes = {name: np.ascontiguousarray(plane) for name, plane in channels.items()}
     buffer = io.BytesIO()
     OpenEXR.File(header, planes, 0).write(buffer)
@@ -75,8 +81,8 @@ def _check(data: bytes, shape: tuple[int, int], channels: Mapping[str, np.dtype[
     rows, columns = shape
     if header.get("dataWindow") != struct.pack("<4i", 0, 0, columns - 1, rows - 1):
         raise CorruptFrameError(f"EXR is not {rows}x{columns}")
-    if header.get("compression") != bytes([_ZIP]):
-        raise CorruptFrameError("EXR is not ZIP-compressed")
+    if header.get("compression") not in _KINDS:
+        raise CorruptFrameError("EXR is neither ZIP nor uncompressed")
     if _channel_list(header.get("channels", b"")) != dict(channels):
         raise CorruptFrameError(f"EXR holds other channels than {', '.join(channels)}")
 

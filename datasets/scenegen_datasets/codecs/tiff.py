@@ -1,7 +1,8 @@
-"""Depth: float32 TIFF, deflate (Adobe code 8) with the floating-point predictor, one strip, one page.
+"""Depth: float32 TIFF, LZW with the floating-point predictor, one strip, one page.
 
-cv2 and Pillow read it exactly, infinity included. Traps: the legacy deflate code 32946 makes readers warn, zstd fails
-in the cv2 wheel, and of several pages cv2 silently reads the first.
+cv2 and Pillow read it exactly, infinity included. Deflate would save 20 kB of a 1 MB frame and cost 2.6 times the
+processor time (``benchmarks/encode.py``). Traps: the legacy deflate code 32946 makes readers warn, zstd fails in cv2's
+wheel, and of several pages cv2 silently reads the first.
 """
 
 from __future__ import annotations
@@ -13,10 +14,10 @@ from numpy.typing import NDArray
 
 from scenegen.foundation.errors import CorruptFrameError
 
-_DEFLATE, _FLOAT_PREDICTOR = 8, 3
+_LZW, _FLOAT_PREDICTOR = 5, 3
 _ENTRY = struct.Struct("<HHII")
 _TYPE_BYTES = {3: 2, 4: 4}
-_EXPECTED = {258: 32, 259: _DEFLATE, 277: 1, 317: _FLOAT_PREDICTOR, 339: 3}
+_EXPECTED = {258: 32, 259: _LZW, 277: 1, 317: _FLOAT_PREDICTOR, 339: 3}
 _MAX_ENTRIES = 64
 
 
@@ -26,7 +27,7 @@ def encode(depth: NDArray[np.float32]) -> bytes:
 
     options = [
         cv2.IMWRITE_TIFF_COMPRESSION,
-        _DEFLATE,
+        _LZW,
         cv2.IMWRITE_TIFF_PREDICTOR,
         _FLOAT_PREDICTOR,
         cv2.IMWRITE_TIFF_ROWSPERSTRIP,
