@@ -14,6 +14,7 @@ from __future__ import annotations
 import math
 from functools import cache
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from jaxtyping import Float32, Float64
@@ -58,7 +59,6 @@ def bake(
     mi, dr = backend.modules()
     world = loaded.world
     directions, _ = exposure.gather.shape
-    rounds = (knobs or ExposureKnobs()).smoothing
     emitted = _planck(band_um)(state.temperature_K)
     reference = float(emitted[0])
     emissivity = np.array([s.emissivity for s in world.palette], np.float32)[world.sites.surface]
@@ -70,8 +70,20 @@ def bake(
         incoming = mean_over_list(gather, _joined(radiance, sky), directions)
         radiance = eps * own + (1.0 - eps) * incoming
     dr.eval(incoming)
-    smooth = FacetAverage.of(world)(np.asarray(incoming), rounds)
-    return np.asarray(math.pi * (smooth.astype(np.float64) + reference), np.float32)
+    met = np.asarray(incoming)
+    if (knobs or ExposureKnobs()).smoothing:
+        met = _average(loaded, exposure)(met)
+    return np.asarray(math.pi * (met.astype(np.float64) + reference), np.float32)
+
+
+def _average(loaded: LoadedWorld, exposure: Exposure) -> FacetAverage:
+    """Smoothing operator of an exposure; fitted once for all its thermal states."""
+    if exposure not in _FITTED:
+        _FITTED[exposure] = FacetAverage.of(loaded.world, exposure.gather)
+    return _FITTED[exposure]
+
+
+_FITTED: WeakKeyDictionary[Exposure, FacetAverage] = WeakKeyDictionary()
 
 
 @cache

@@ -6,12 +6,15 @@ from functools import cache
 
 import numpy as np
 from jaxtyping import Float32, Float64
+from scipy.optimize import fsolve
 
 from scenegen.radiometry.sky import air_mass
 
 _GOLDEN = (np.sqrt(5.0) - 1.0) / 2.0
-_REFERENCE_DEPTH, _REFERENCE_POWER = 0.12, 0.788
-"""Optical depth and air-mass power of a clear sky between dry and humid, where the error changes its sign."""
+_MIDDLE, _DRY, _HUMID = 0.12, 0.10, 0.25
+"""Optical depths of clear skies in the long-wave window: in between, and two that are reproduced exactly."""
+_POWER = 0.788
+"""Exponent of the air mass in them."""
 _FINE = 512
 
 
@@ -19,15 +22,13 @@ _FINE = 512
 def cosine_directions(count: int) -> Float64[np.ndarray, "count 3"]:
     """Unit vectors about +z, each standing for the share 1/count of the cosine-weighted hemisphere.
 
-    Golden-angle spiral on the projected disc ("sunflower"). The disc is cut into rings of equal area; each ring is
-    represented not at its middle but where a middling clear sky has its ring mean, because sky radiance rises steeply
-    towards the horizon: that makes the irradiance of an unobstructed horizontal site right to 1e-4.
+    Golden-angle spiral on the projected disc ("sunflower"): the disc is cut into rings of equal area, one direction
+    each. Sky radiance rises steeply towards the horizon, so that a direction in the middle of its ring would not stand
+    for the ring. Each direction lies where a middling clear sky has its ring mean, and the two lowest are moved within
+    their rings until a dry and a humid sky are integrated exactly: the irradiance of an unobstructed horizontal site is
+    then right to 1e-4 under any clear sky, from 64 directions on.
     """
-    share = np.linspace(0.0, 1.0, count * _FINE + 1)
-    middle = 0.5 * (share[1:] + share[:-1])
-    mean = _reference_sky(np.sqrt(middle)).reshape(count, _FINE).mean(axis=1)
-    sine = np.linspace(0.0, 1.0, 200_001)
-    height = np.interp(-mean, -_reference_sky(sine), sine)
+    height = _heights(count)
     azimuth = 2.0 * np.pi * ((np.arange(count) * _GOLDEN) % 1.0)
     radius = np.sqrt(1.0 - height**2)
     found = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), height], axis=1)
@@ -35,9 +36,27 @@ def cosine_directions(count: int) -> Float64[np.ndarray, "count 3"]:
     return found
 
 
-def _reference_sky(sine: Float64[np.ndarray, "samples"]) -> Float64[np.ndarray, "samples"]:
-    """Emissivity of the reference sky, falling with the sine of the elevation."""
-    return np.asarray(1.0 - np.exp(-_REFERENCE_DEPTH * air_mass(sine) ** _REFERENCE_POWER))
+def _heights(count: int) -> Float64[np.ndarray, "count"]:
+    """Sine of the elevation of each direction, rising."""
+    share = np.linspace(0.0, 1.0, count * _FINE + 1)
+    fine = np.sqrt(0.5 * (share[1:] + share[:-1]))
+    sine = np.linspace(0.0, 1.0, 200_001)
+    ring_mean = _reference_sky(fine, _MIDDLE).reshape(count, _FINE).mean(axis=1)
+    height = np.interp(-ring_mean, -_reference_sky(sine, _MIDDLE), sine)
+    exact = [float(_reference_sky(fine, depth).mean()) for depth in (_DRY, _HUMID)]
+
+    def surplus(lowest: Float64[np.ndarray, "2"]) -> list[float]:
+        moved = np.concatenate([lowest, height[2:]])
+        means = [float(_reference_sky(moved, depth).mean()) for depth in (_DRY, _HUMID)]
+        return [found / wanted - 1.0 for found, wanted in zip(means, exact, strict=True)]
+
+    height[:2] = fsolve(surplus, height[:2])
+    return np.asarray(np.round(height, 10))
+
+
+def _reference_sky(sine: Float64[np.ndarray, "samples"], depth: float) -> Float64[np.ndarray, "samples"]:
+    """Emissivity of a reference sky, falling with the sine of the elevation."""
+    return np.asarray(1.0 - np.exp(-depth * air_mass(sine) ** _POWER))
 
 
 def tangents(

@@ -44,13 +44,15 @@ def expose(
     gather = gather_list(loaded, rays, knobs.directions, turn)
     group, groups = group_sites(world)
     sky, share = shares(gather, group, groups)
-    average = FacetAverage.of(world)
+    if knobs.smoothing:
+        average = FacetAverage.of(world, gather)
+        sky, share = average(sky), average(share)
     return Exposure(
         season=season,
         sun_hour=steps.hour,
         sun_direction=steps.direction,
         beam=beam,
-        sky_view=average(sky, knobs.smoothing),
+        sky_view=sky,
         gather=gather,
-        neighbour_share=average(share, knobs.smoothing),
+        neighbour_share=share,
     )

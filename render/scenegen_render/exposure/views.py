@@ -35,6 +35,15 @@ def mean_over_list(gather: Any, values: Any, directions: int) -> Any:
     return total / dr.opaque(mi.Float, directions)
 
 
+def open_share(gather: UInt32[np.ndarray, "directions sites"]) -> Float32[np.ndarray, "sites"]:
+    """Share of the directions that meet the open sky above the horizon."""
+    mi, _ = backend.modules()
+    directions, sites = gather.shape
+    is_sky = np.zeros(sites + SKY_BINS, np.float32)
+    is_sky[sites + 1 :] = 1.0
+    return np.asarray(mean_over_list(mi.UInt(gather.reshape(-1)), mi.Float(is_sky), directions))
+
+
 def shares(
     gather: UInt32[np.ndarray, "directions sites"], group: UInt8[np.ndarray, "sites"], groups: int
 ) -> tuple[Float32[np.ndarray, "sites"], Float32[np.ndarray, "sites groups"]]:

@@ -24,7 +24,7 @@ from scenegen_render.exposure.knobs import ExposureKnobs
 from scenegen_render.reference_scenes import Patch, box, plate, room, world_of
 from scenegen_render.scene import load
 
-FINE = ExposureKnobs(directions=1024, smoothing=0, sun_step_min=120.0)
+FINE = ExposureKnobs(directions=1024, smoothing=False, sun_step_min=120.0)
 SEASON = Season(latitude_deg=40.0, month=7, day=15)
 LONG = 4000.0
 
@@ -113,8 +113,8 @@ def test_open_plate_sees_nothing_but_sky() -> None:
     assert exposure.gather.min() > exposure.gather.shape[1]  # sky bins above the horizon only
 
 
-@pytest.mark.parametrize("smoothing", [0, 2])
-def test_closed_room_sees_no_sky_and_shares_sum_to_one(smoothing: int) -> None:
+@pytest.mark.parametrize("smoothing", [False, True])
+def test_closed_room_sees_no_sky_and_shares_sum_to_one(smoothing: bool) -> None:
     world = room(PALETTE)
     exposure = _exposed(world, ExposureKnobs(smoothing=smoothing))
     np.testing.assert_array_equal(exposure.sky_view, 0.0)
@@ -127,7 +127,7 @@ def test_shares_sum_to_one_with_what_lies_below_the_horizon() -> None:
     """A tower on a small island of ground: walls look past the edge of the world."""
     island = _rectangle((-20, -20, 0), (40, 0, 0), (0, 40, 0), (8, 8), 1, Semantic.ROAD, 1)
     tower = box((-4.0, -4.0, 0.0), (4.0, 4.0, 30.0), 4.0, 0, Semantic.WALL, 2)
-    exposure = _exposed(world_of("island", [island, *tower], PALETTE), ExposureKnobs(smoothing=0))
+    exposure = _exposed(world_of("island", [island, *tower], PALETTE), ExposureKnobs(smoothing=False))
     sites = exposure.gather.shape[1]
     assert exposure.gather.max() < sites + SKY_BINS
     beyond = np.mean(exposure.gather == sites, axis=0)
