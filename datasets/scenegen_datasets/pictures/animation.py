@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from PIL import Image
 
 from scenegen_datasets.pictures.canvas import FAINT, Canvas
-from scenegen_datasets.pictures.scales import TILE_PX, Scales, thermal_range, tile_size
+from scenegen_datasets.pictures.scales import TILE_PX, Tone, depth_range, flow_range, tile, tile_size
 from scenegen_datasets.pictures.shot import Shot
 
 FRAME_MS = 90
@@ -24,8 +24,9 @@ def animate(shots: Sequence[Shot]) -> bytes:
     bytes
         An animated WebP that loops for ever.
     """
-    scales, span_K = Scales.of(shots), thermal_range(shots[len(shots) // 2])
-    frames = [_frame(shot, scales, span_K) for shot in shots]
+    middle = shots[len(shots) // 2]
+    scales = Tone.of(middle), depth_range(shots), flow_range(middle)
+    frames = [_frame(shot, *scales) for shot in shots]
     file = io.BytesIO()
     frames[0].save(
         file, "WEBP", save_all=True, append_images=frames[1:], duration=FRAME_MS, loop=0, quality=82, method=4
@@ -33,16 +34,16 @@ def animate(shots: Sequence[Shot]) -> bytes:
     return file.getvalue()
 
 
-def _frame(shot: Shot, scales: Scales, span_K: tuple[float, float]) -> Image.Image:
+def _frame(shot: Shot, tone: Tone, span_m: tuple[float, float], full_px: float) -> Image.Image:
     words = {
-        "thermal": f"thermal  {span_K[0]:.0f}-{span_K[1]:.0f} K",
-        "depth": f"depth  {scales.depth_m[0]:g}-{scales.depth_m[1]:g} m",
-        "flow": f"flow  up to {scales.flow_px:g} px",
+        "thermal": f"thermal  {tone.low_K:.0f}-{tone.high_K:.0f} K",
+        "depth": f"depth  {span_m[0]:g}-{span_m[1]:g} m",
+        "flow": f"flow  up to {full_px:g} px",
     }
     columns = [name for name in shot.columns if name in words]
     width = len(columns) * TILE_PX + (len(columns) - 1) * GAP_PX
     canvas = Canvas(width, tile_size(shot.depth.shape)[1] + STRIP_PX)
     for k, name in enumerate(columns):
-        canvas.picture(k * (TILE_PX + GAP_PX), STRIP_PX, scales.tile(shot, name, span_K))
+        canvas.picture(k * (TILE_PX + GAP_PX), STRIP_PX, tile(shot, name, tone, span_m, full_px))
         canvas.text(k * (TILE_PX + GAP_PX) + 4, 18, words[name], 12, FAINT)
     return canvas.image

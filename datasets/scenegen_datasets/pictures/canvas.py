@@ -10,6 +10,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from scenegen_datasets.pictures import colour
+from scenegen_datasets.pictures.scales import Tone
 
 GROUND = (16, 19, 24)
 INK = (226, 230, 236)
@@ -59,14 +60,16 @@ class Canvas:
         """A filled square."""
         self._draw.rectangle((x, y, x + size_px - 1, y + size_px - 1), fill=fill)
 
-    def grey_bar(self, x: int, y: int, width_px: int, low_K: float, high_K: float) -> None:
-        """Black-to-white bar between its two temperatures, on one line of text with baseline `y` + 9."""
-        left, right = f"{low_K:.1f} K", f"{high_K:.1f} K"
+    def tone_bar(self, x: int, y: int, width_px: int, tone: Tone) -> None:
+        """Bar of the greys a picture uses between its two temperatures, on one line with baseline `y` + 9."""
+        left, right = f"{tone.low_K:.1f} K", f"{tone.high_K:.1f} K"
         start = math.ceil(self.text(x, y + 9, left, 11, FAINT)) + 6
         end = x + width_px - math.ceil(self.width_of(right, 11)) - 6
         self.text(end + 6, y + 9, right, 11, FAINT)
-        ramp = np.repeat(np.rint(np.linspace(0, 255, max(end - start, 2)))[None, :, None], 3, axis=2)
-        self.picture(start, y + 1, np.asarray(np.repeat(ramp, 8, axis=0), np.uint8))
+        ramp = tone.ramp(max(end - start, 2))
+        self.picture(
+            start, y + 1, np.ascontiguousarray(np.broadcast_to(ramp[None, :, None], (8, len(ramp), 3)))
+        )
 
     def depth_bar(self, x: int, y: int, width_px: int, low_m: float, high_m: float) -> None:
         """Colour bar of distances with logarithmic ticks below and a swatch for the sky."""
@@ -80,15 +83,14 @@ class Canvas:
         self.swatch(x + width_px - sky + 12, y + 1, 8, colour.SKY_COLOUR)
         self.text(x + width_px, y + 9, "sky", 11, FAINT, "rs")
 
-    def flow_wheel(self, x: int, y: int, size_px: int, full_px: float) -> None:
-        """Colour wheel of directions and the length its rim stands for."""
+    def flow_wheel(self, x: int, y: int, size_px: int) -> None:
+        """Colour wheel of directions."""
         axis = (np.arange(size_px) + 0.5) / size_px * 2 - 1
         u, v = np.meshgrid(axis, axis)
         wheel = colour.flow(np.stack([u, v], axis=-1).astype(np.float32), 1.0)
         inside = np.clip((1.0 - np.hypot(u, v)) * size_px / 2 + 0.5, 0.0, 1.0)[..., None]
         mixed = inside * wheel + (1.0 - inside) * np.array(GROUND)
         self.picture(x, y, np.asarray(np.rint(mixed), np.uint8))
-        self.text(x + size_px + 6, y + size_px / 2 + 4, f"rim = {full_px:g} px", 11, FAINT)
 
 
 def _ticks(low_m: float, high_m: float) -> list[tuple[float, str]]:

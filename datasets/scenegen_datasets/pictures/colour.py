@@ -28,12 +28,6 @@ _WHEEL = (
 _WHEEL_SIZE = sum(count for _, count in _WHEEL)
 
 
-def grey(values: Float[np.ndarray, "rows columns"], low: float, high: float) -> Picture:
-    """White-hot grey, linear between `low` (black) and `high` (white)."""
-    share = np.clip((values - low) / max(high - low, 1e-9), 0.0, 1.0)
-    return np.asarray(np.repeat(np.rint(share * 255)[..., None], 3, axis=2), np.uint8)
-
-
 def depth_range(depths: list[Float32[np.ndarray, "rows columns"]]) -> tuple[float, float]:
     """Range [m] that shows a set of depth layers well: 1st to 99th percentile, rounded outwards to 1-2-5 steps."""
     finite = np.concatenate([d[np.isfinite(d)] for d in depths])
@@ -73,10 +67,14 @@ def instance(ids: Integer[np.ndarray, "rows columns"]) -> Picture:
 
 
 def flow_range(flows: list[Float32[np.ndarray, "rows columns 2"]]) -> float:
-    """Length [px] at full colour that shows a set of flow layers well: the 98th percentile, rounded up."""
+    """Length [px] at full colour that shows a set of flow layers well: the 90th percentile, rounded up."""
     length = np.concatenate([np.hypot(f[..., 0], f[..., 1]).ravel() for f in flows])
     length = length[np.isfinite(length)]
-    return _step(float(np.percentile(length, 98.0)), down=False) if length.size else 1.0
+    return (
+        _step(float(np.percentile(length, 90.0)), down=False, steps=(1.0, 1.5, 2.0, 3.0, 5.0, 7.0, 10.0))
+        if length.size
+        else 1.0
+    )
 
 
 def flow(uv: Float32[np.ndarray, "rows columns 2"], full_px: float) -> Picture:
@@ -115,10 +113,10 @@ def _with_sky(picture: Picture, sky: Bool[np.ndarray, "rows columns"]) -> Pictur
     return picture
 
 
-def _step(value: float, *, down: bool) -> float:
-    """Nearest of 1, 2, 5 times a power of ten below or above."""
+def _step(value: float, *, down: bool, steps: tuple[float, ...] = (1.0, 2.0, 5.0, 10.0)) -> float:
+    """Nearest round number below or above: one of `steps` times a power of ten."""
     power = 10.0 ** math.floor(math.log10(max(value, 1e-6)))
-    steps = [m * power for m in (1.0, 2.0, 5.0, 10.0)]
-    below = [s for s in steps if s <= value * (1 + 1e-9)]
-    above = [s for s in steps if s >= value * (1 - 1e-9)]
-    return (below or steps)[-1] if down else (above or steps)[0]
+    known = [m * power for m in steps]
+    below = [s for s in known if s <= value * (1 + 1e-9)]
+    above = [s for s in known if s >= value * (1 - 1e-9)]
+    return (below or known)[-1] if down else (above or known)[0]

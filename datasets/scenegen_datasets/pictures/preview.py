@@ -78,8 +78,10 @@ def _shot(sample: dict[str, Any], scale: CountScale) -> Shot:
     layers = {
         name: np.asarray(sample[name]) for name in ("depth", "semantic", "instance", "flow") if name in sample
     }
-    thermal_K = counts_to_brightness_K(np.asarray(sample["thermal"], np.uint16), scale)
-    return Shot(sample["key"], _facts(sample["facts"]), thermal_K, **layers)
+    counts = np.asarray(sample["thermal"], np.uint16)
+    return Shot(
+        sample["key"], _facts(sample["facts"]), counts, counts_to_brightness_K(counts, scale), **layers
+    )
 
 
 def _facts(clip: dict[str, Any]) -> str:

@@ -10,7 +10,7 @@ from PIL import Image
 from scenegen.classes import CLASSES
 from scenegen_datasets.pictures import colour
 from scenegen_datasets.pictures.canvas import FAINT, Canvas
-from scenegen_datasets.pictures.scales import TILE_PX, Scales, thermal_range, tile_size
+from scenegen_datasets.pictures.scales import TILE_PX, Tone, depth_range, flow_range, tile, tile_size
 from scenegen_datasets.pictures.shot import Shot
 
 MARGIN_PX = 20
@@ -31,15 +31,15 @@ def contact_sheet(shots: Sequence[Shot], title: str, subtitle: str) -> Image.Ima
     title, subtitle : str
         First line of the sheet.
     """
-    columns, scales = shots[0].columns, Scales.of(shots)
+    columns, span_m = shots[0].columns, depth_range(shots)
     width = 2 * MARGIN_PX + len(columns) * TILE_PX + (len(columns) - 1) * GAP_PX
     row_px = CAPTION_PX + tile_size(shots[0].depth.shape)[1] + BAR_PX
     legend = _legend_lines(shots, width)
     foot = HEAD_PX + len(shots) * row_px
     canvas = Canvas(width, foot + 10 + LEGEND_LINE_PX * len(legend) + MARGIN_PX)
-    _head(canvas, title, subtitle, columns, scales)
+    _head(canvas, title, subtitle, columns, span_m)
     for k, shot in enumerate(shots):
-        _row(canvas, HEAD_PX + k * row_px, shot, scales)
+        _row(canvas, HEAD_PX + k * row_px, shot, span_m)
     for k, line in enumerate(legend):
         _legend(canvas, foot + 22 + k * LEGEND_LINE_PX, line)
     return canvas.image
@@ -49,7 +49,9 @@ def _x(column: int) -> int:
     return MARGIN_PX + column * (TILE_PX + GAP_PX)
 
 
-def _head(canvas: Canvas, title: str, subtitle: str, columns: Sequence[str], scales: Scales) -> None:
+def _head(
+    canvas: Canvas, title: str, subtitle: str, columns: Sequence[str], span_m: tuple[float, float]
+) -> None:
     end = canvas.text(MARGIN_PX, 36, title, 20)
     canvas.text(end + 14, 36, subtitle, 13, FAINT)
     for column, name in enumerate(columns):
@@ -57,19 +59,22 @@ def _head(canvas: Canvas, title: str, subtitle: str, columns: Sequence[str], sca
         if name == "thermal":
             canvas.text(_x(column) + 62, 74, "white hot", 11, FAINT)
         elif name == "depth":
-            canvas.depth_bar(_x(column) + 52, 64, TILE_PX - 52, *scales.depth_m)
+            canvas.depth_bar(_x(column) + 52, 64, TILE_PX - 52, *span_m)
         elif name == "flow":
-            canvas.flow_wheel(_x(column) + 42, 54, 30, scales.flow_px)
+            canvas.flow_wheel(_x(column) + 42, 54, 30)
 
 
-def _row(canvas: Canvas, y: int, shot: Shot, scales: Scales) -> None:
+def _row(canvas: Canvas, y: int, shot: Shot, span_m: tuple[float, float]) -> None:
     end = canvas.text(MARGIN_PX, y + 18, shot.name, 13)
     canvas.text(end + 12, y + 18, shot.facts, 13, FAINT)
-    span_K = thermal_range(shot)
+    tone, full_px = Tone.of(shot), flow_range(shot)
     top = y + CAPTION_PX
+    bar = top + tile_size(shot.depth.shape)[1] + 5
     for column, name in enumerate(shot.columns):
-        canvas.picture(_x(column), top, scales.tile(shot, name, span_K))
-    canvas.grey_bar(_x(0), top + tile_size(shot.depth.shape)[1] + 5, TILE_PX, *span_K)
+        canvas.picture(_x(column), top, tile(shot, name, tone, span_m, full_px))
+        if name == "flow":
+            canvas.text(_x(column) + TILE_PX, bar + 9, f"rim of the wheel: {full_px:g} px", 11, FAINT, "rs")
+    canvas.tone_bar(_x(0), bar, TILE_PX, tone)
 
 
 def _legend_lines(shots: Sequence[Shot], width: int) -> list[list[int]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float32, UInt8, UInt32
+from jaxtyping import Float32, UInt8, UInt16, UInt32
 
 
 @dataclass(frozen=True, eq=False)
@@ -18,8 +18,10 @@ class Shot:
         Of the clip and frame.
     facts : str
         Hour, date, latitude, weather in one line.
+    counts : uint16 (rows, columns)
+        What the camera reported.
     thermal_K : float32 (rows, columns)
-        What the camera reported, as brightness temperature [K].
+        The same as brightness temperature [K].
     depth : float32 (rows, columns)
         Planar z [m], +inf for sky.
     semantic, instance, flow : arrays as in `scenegen_render.frame.Frame`, or None where the dataset has none
@@ -27,6 +29,7 @@ class Shot:
 
     name: str
     facts: str
+    counts: UInt16[np.ndarray, "rows columns"]
     thermal_K: Float32[np.ndarray, "rows columns"]
     depth: Float32[np.ndarray, "rows columns"]
     semantic: UInt8[np.ndarray, "rows columns"] | None = None
