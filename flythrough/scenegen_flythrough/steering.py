@@ -84,8 +84,8 @@ def fly_batch(
         return np.zeros((0, poses, 3))
     xy = airspace.centre(free[starts_rng.integers(len(free), size=batch)])
     agility = Agility.of(knobs, intent.speed_mps)
-    look = max(4.0 / agility.curvature, 1.5 * intent.speed_mps, 20.0) if agility.curvature < 0.2 else 20.0
-    reach = np.minimum(look, 60.0) * _LOOK_SHARES
+    # Far enough to see a turn coming at this curvature, not so far that every street ends in a wall.
+    reach = min(max(4.0 / agility.curvature, 1.5 * intent.speed_mps, 20.0), 60.0) * _LOOK_SHARES
     heading = _open_heading(airspace, room, xy, heading_rng)
     wander = _wander(wander_rng, batch, poses, knobs.spacing_m, agility.curvature)
     target = intent.height_m + _sway(sway_rng, batch, poses, knobs, intent.height_m)
