@@ -138,15 +138,24 @@ def checked(row: np.void) -> np.void:
 
 
 def job_of(row: np.void) -> ClipJob:
-    """Return the clip a row belongs to."""
-    return ClipJob(
-        ordinal=int(row["ordinal"]),
-        map=row["map"].decode("ascii", "replace"),
-        world=int(row["world"]),
-        clip=int(row["clip"]),
-        split=SPLITS[int(row["split"])],
-        pairs=int(row["frames"]) - 1,
-    )
+    """Return the clip a row belongs to.
+
+    Raises
+    ------
+    CorruptFrameError
+        If no clip can have such a row.
+    """
+    try:
+        return ClipJob(
+            ordinal=int(row["ordinal"]),
+            map=row["map"].decode("ascii", "replace"),
+            world=int(row["world"]),
+            clip=int(row["clip"]),
+            split=SPLITS[int(row["split"])],
+            pairs=int(row["frames"]) - 1,
+        )
+    except (ValueError, IndexError) as error:
+        raise CorruptFrameError(f"index.npy: a row makes no sense ({error}); run `scenegen verify`") from None
 
 
 def _fill_members(rows: Rows, frames: Iterable[FrameEntry]) -> None:

@@ -88,6 +88,7 @@ class PairDataset:
     def _open(self, source: Source | None = None) -> None:
         self._source = source or open_source(self.root, self._allow_partial)
         self._reader = ShardReader(self.root)
+        self._facts: dict[int, dict[str, Any]] = {}
         stored = self._source.layers
         missing = [x for x in (*self.layers, *(("thermal",) if self._previous else ())) if x not in stored]
         if missing and len(self._source.rows):
@@ -134,7 +135,9 @@ class PairDataset:
         first = int(self._source.starts[clip]) + 1 + (at - before) * self._stride
         frames = [self._frame(first + int(step), clip) for step in self._steps]
         sample = frames[0] if len(frames) == 1 else _stacked(frames)
-        sample["facts"] = _facts(self._source.facts(clip))
+        if clip not in self._facts:
+            self._facts[clip] = _facts(self._source.facts(clip))
+        sample["facts"] = dict(self._facts[clip])
         return sample
 
     def _frame(self, position: int, clip: int) -> Sample:
@@ -146,11 +149,11 @@ class PairDataset:
         job = job_of(row)
         sample: Sample = {}
         for member, group in self._groups.items():
-            arrays = self._reader.arrays(row, member, group)
+            arrays = self._reader.arrays(row, job, member, group)
             sample |= {layer.name: arrays[layer.name] for layer in group if layer.name in self.layers}
         if self._previous:
             before = checked(self._source.rows[position - 1])
-            sample[PREVIOUS] = self._reader.arrays(before, "thermal.png", (LAYERS["thermal"],))["thermal"]
+            sample[PREVIOUS] = self._reader.arrays(before, job, "thermal.png", (LAYERS["thermal"],))["thermal"]
         return sample | {
             "key": job.key(int(row["frame"])),
             "map": job.map,
@@ -168,7 +171,7 @@ class PairDataset:
 
         A growing dataset travels as it was seen here, so that all workers agree on its length.
         """
-        state = {k: v for k, v in self.__dict__.items() if k != "_reader"}
+        state = {k: v for k, v in self.__dict__.items() if k not in ("_reader", "_facts")}
         if isinstance(self._source.rows, np.memmap):
             state["_source"] = None
         return state

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenegen.foundation.errors import CorruptFrameError
-from scenegen_datasets.index import job_of
+from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import Layer, max_member_bytes, member_field
 from scenegen_datasets.pixels import decode_member
 
@@ -29,15 +29,14 @@ class ShardReader:
         self._root = root
         self._open: OrderedDict[str, int] = OrderedDict()
 
-    def arrays(self, row: np.void, member: str, layers: tuple[Layer, ...]) -> dict[str, NDArray[Any]]:
-        """Decode one member of the frame that `row` (checked) describes.
+    def arrays(self, row: np.void, job: ClipJob, member: str, layers: tuple[Layer, ...]) -> dict[str, NDArray[Any]]:
+        """Decode one member of the frame of `job` that `row` (checked) describes.
 
         Raises
         ------
         CorruptFrameError
             If the shard is missing or short, or the member's bytes are not those that were written.
         """
-        job = job_of(row)
         name = member_field(member)
         where = f"{job.shard}: {job.key(int(row['frame']))}.{member}"
         size = int(row[f"{name}_size"])
