@@ -17,7 +17,7 @@ from scenegen_render import backend
 from scenegen_render.trace import noise
 
 _SKY_NODES = 2048
-_CLOUD_RAMP = 0.5
+_CLOUD_RAMP = 1.2
 """Width of a cloud's edge, in standard deviations of the noise that shapes it."""
 _CLOUD_OCTAVES = ((1.0, 1.0), (2.3, 0.55), (5.3, 0.3))
 """Frequency and amplitude."""
