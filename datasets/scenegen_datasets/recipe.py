@@ -47,7 +47,7 @@ class Recipe(Section):
     """Flights through one world, each with its own weather and hour."""
     pairs_per_clip: Annotated[Count, Field(ge=1, le=9000)] = 64
     """Pairs in one flight; it stores one frame more."""
-    layers: Names = DEFAULT_LAYERS
+    layers: Names = check_layers(DEFAULT_LAYERS)
     """What is stored of each frame."""
     climate: ClimateKnobs = ClimateKnobs()
     flight: FlightKnobs = FlightKnobs()
