@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -62,13 +61,16 @@ def bake(
     emitted = _planck(band_um)(state.temperature_K)
     reference = float(emitted[0])
     emissivity = np.array([s.emissivity for s in world.palette], np.float32)[world.sites.surface]
-    own, eps = mi.Float((emitted - reference).astype(np.float32)), mi.Float(emissivity)
-    sky = mi.Float((_sky(state.atmosphere, band_um) - reference).astype(np.float32))
-    gather = mi.UInt(exposure.gather.reshape(-1))
-    radiance = own
-    for _ in range(_BOUNCES):
-        incoming = mean_over_list(gather, _joined(radiance, sky), directions)
-        radiance = eps * own + (1.0 - eps) * incoming
+    own = (emitted - reference).astype(np.float32)
+    sky = (_sky(state.atmosphere, band_um) - reference).astype(np.float32)
+    gather, table = backend.upload(exposure.gather), backend.upload(np.concatenate([own, sky]))
+    emission, reflectance = backend.upload(emissivity * own), backend.upload(1.0 - emissivity)
+    site = dr.arange(mi.UInt, len(own))
+    for bounce in range(_BOUNCES):
+        incoming = mean_over_list(gather, table, directions)
+        if bounce + 1 < _BOUNCES:
+            dr.scatter(table, dr.fma(reflectance, incoming, emission), site)
+            dr.eval(table)
     dr.eval(incoming)
     met = np.asarray(incoming)
     if (knobs or ExposureKnobs()).smoothing:
@@ -98,11 +100,3 @@ def _sky(atmosphere: Atmosphere, band_um: tuple[float, float]) -> Float64[np.nda
     sine = sky_bin_sin_elevation()
     sine[0] = -1.0
     return sky_radiance(sine, atmosphere, band_um)
-
-
-def _joined(radiance: Any, sky: Any) -> Any:
-    """Site values, then sky bins, as one evaluated table."""
-    _, dr = backend.modules()
-    table = dr.concat((radiance, sky))
-    dr.eval(table)
-    return table

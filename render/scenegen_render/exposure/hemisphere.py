@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -11,14 +10,9 @@ from jaxtyping import Float32, UInt32
 from scenegen.exposure import SKY_BINS
 from scenegen_render import backend
 from scenegen_render.exposure.directions import cosine_directions, tangents
+from scenegen_render.exposure.lanes import Lanes, launches
 from scenegen_render.exposure.rays import SiteRays
 from scenegen_render.scene import LoadedWorld
-
-_BLOCK = 256
-"""Sites that stay together for all directions: their surroundings stay in the cache (1.3 times faster than one
-direction of the whole world at a time)."""
-_LAUNCH_RAYS = 4_000_000
-"""Rays of one launch: well below a second, so that an interrupt is answered."""
 
 
 def gather_list(
@@ -41,10 +35,11 @@ def gather_list(
     sites = len(rays.order)
     fan = _Fan(loaded, rays, directions, turn)
     met = dr.empty(mi.UInt, directions * sites)
-    places = max(_BLOCK, _LAUNCH_RAYS // directions // _BLOCK * _BLOCK)
-    for first in range(0, sites, places):
-        blocks = math.ceil(min(places, sites - first) / _BLOCK)
-        fan.trace(met, first, blocks)
+    for lanes in launches(sites, directions):
+        entry = fan.trace(lanes)
+        target = lanes.row * fan.sites + dr.gather(mi.UInt, rays.site, lanes.place, lanes.active)
+        dr.scatter(met, entry, target, lanes.active, mode=dr.ReduceMode.Permute)
+        dr.eval(met)
     return np.asarray(met).reshape(directions, sites)
 
 
@@ -58,39 +53,26 @@ class _Fan:
         self.loaded, self.rays = loaded, rays
         normal = loaded.world.sites.normal[rays.order]
         first, second = tangents(normal, turn[rays.order])
-        self.first, self.second = mi.Float(first.reshape(-1)), mi.Float(second.reshape(-1))
-        self.local = mi.Float(cosine_directions(directions).astype(np.float32).reshape(-1))
-        self.directions = dr.opaque(mi.UInt, directions)
+        self.first, self.second = backend.upload(first), backend.upload(second)
+        self.local = backend.upload(cosine_directions(directions).astype(np.float32))
         self.sites = dr.opaque(mi.UInt, len(rays.order))
 
-    def trace(self, met: Any, first: int, blocks: int) -> None:
-        """Trace all directions of some blocks of sites and write what they meet."""
-        mi, dr = backend.modules()
-        lane = dr.arange(mi.UInt, blocks * _BLOCK * dr.slice(self.directions))
-        row, column = lane // _BLOCK, lane % _BLOCK
-        block = row // self.directions
-        direction = row - block * self.directions
-        place = dr.opaque(mi.UInt, first) + block * _BLOCK + column
-        active = place < self.sites
-        toward = self._toward(direction, place, active)
-        hit = self.loaded.scene.ray_intersect_preliminary(
-            self.rays.start(place, toward, active), coherent=False, active=active
-        )
+    def trace(self, lanes: Lanes) -> Any:
+        """What each ray of a launch meets: a site, or the number of sites plus a sky bin."""
+        _, dr = backend.modules()
+        toward = self._toward(lanes)
+        start = self.rays.start(lanes.place, toward, lanes.active)
+        hit = self.loaded.scene.ray_intersect_preliminary(start, coherent=False, active=lanes.active)
         valid = hit.is_valid()
-        met_site = self.loaded.nearest_site(dr.select(valid, hit.prim_index, 0), hit.prim_uv)
-        entry = dr.select(valid, met_site, self.sites + sky_bin(toward.z))
-        target = direction * self.sites + dr.gather(mi.UInt, self.rays.site, place, active)
-        dr.scatter(met, entry, target, active, mode=dr.ReduceMode.Permute)
-        dr.eval(met)
+        site = self.loaded.nearest_site(dr.select(valid, hit.prim_index, 0), hit.prim_uv)
+        return dr.select(valid, site, self.sites + sky_bin(toward.z))
 
-    def _toward(self, direction: Any, place: Any, active: Any) -> Any:
+    def _toward(self, lanes: Lanes) -> Any:
         mi, dr = backend.modules()
-        local = dr.gather(mi.Vector3f, self.local, direction, active)
-        frame = [
-            dr.gather(mi.Vector3f, axis, place, active)
-            for axis in (self.first, self.second, self.rays.normal)
-        ]
-        return dr.normalize(frame[0] * local.x + frame[1] * local.y + frame[2] * local.z)
+        local = dr.gather(mi.Vector3f, self.local, lanes.row, lanes.active)
+        axes = (self.first, self.second, self.rays.normal)
+        first, second, normal = (dr.gather(mi.Vector3f, axis, lanes.place, lanes.active) for axis in axes)
+        return dr.normalize(first * local.x + second * local.y + normal * local.z)
 
 
 def sky_bin(sine: Any) -> Any:

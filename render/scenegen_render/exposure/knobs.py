@@ -12,7 +12,7 @@ from scenegen.foundation.section import Count, Number, Section
 class ExposureKnobs(Section):
     """How finely sun and surroundings of each site are sampled; ``benchmarks/bake_error.py`` measures what it buys."""
 
-    directions: Annotated[Count, Field(ge=16, le=1024)] = 64
+    directions: Annotated[Count, Field(ge=32, le=1024)] = 64
     """Rays over the hemisphere of each site."""
     sun_step_min: Annotated[Number, Field(ge=2.0, le=120.0)] = 15.0
     """Longest step between sun positions [min]; shadow edges are found eight times finer."""

@@ -46,17 +46,16 @@ class SiteRays:
     @staticmethod
     def of(world: World) -> SiteRays:
         """Sort the sites and put their ray origins on the device."""
-        mi, _ = backend.modules()
         sites = world.sites
         order = spatial_order(sites.position)
         normal = sites.normal[order]
         origin = sites.position[order] + _inset(world)[order] + np.float32(_LIFT_M) * normal
         return SiteRays(
             order=order,
-            site=mi.UInt(order.astype(np.uint32)),
-            origin=mi.Float(origin.reshape(-1)),
-            normal=mi.Float(normal.reshape(-1)),
-            standoff=mi.Float(sites.standoff[order]),
+            site=backend.upload(order.astype(np.uint32)),
+            origin=backend.upload(origin),
+            normal=backend.upload(normal),
+            standoff=backend.upload(sites.standoff[order]),
         )
 
     def start(self, place: Any, direction: Any, active: Any) -> Any:

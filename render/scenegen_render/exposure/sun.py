@@ -11,6 +11,7 @@ from jaxtyping import Bool, Float16, Float32, Float64, Int64
 from scenegen.climate.season import Season
 from scenegen.climate.sun import daylight, sun_direction, sun_samples
 from scenegen_render import backend
+from scenegen_render.exposure.lanes import launches
 from scenegen_render.exposure.rays import SiteRays
 from scenegen_render.scene import LoadedWorld
 
@@ -58,21 +59,20 @@ def sun_beam(loaded: LoadedWorld, rays: SiteRays, steps: SunSteps) -> Float16[np
     to a sixteenth of a step: shadow edges then move smoothly over the ground instead of jumping from step to step.
     """
     sites, count = len(rays.order), len(steps.hour)
-    beam = np.zeros((count, sites), np.float16)
-    normal = loaded.world.sites.normal[rays.order]
+    if not count:
+        return np.zeros((sites, 0), np.float16)
     caster = _SunCaster(loaded, rays, steps.fine_direction)
-    before = caster.lit_all(0) if count else np.zeros(sites, bool)
+    lit = caster.at_step_ends(count + 1)
+    normal = loaded.world.sites.normal[rays.order]
+    beam = np.empty((sites, count), np.float16)
     for k in range(count):
-        after = caster.lit_all((k + 1) * _FINE)
-        beam[k] = _cosine(normal, steps.direction[k]) * (before & after)
-        changed = np.flatnonzero(before != after)
-        start, stop = caster.lit_part(changed, k * _FINE, before[changed])
-        middle = steps.fine_direction[np.rint(0.5 * (start + stop)).astype(np.int64)]
-        share = ((stop - start) / _FINE).astype(np.float32)
-        beam[k, changed] = share * _cosine(normal[changed], middle)
-        before = after
-    found = np.empty((sites, count), np.float16)
-    found[rays.order] = beam.T
+        beam[:, k] = _cosine(normal, steps.direction[k]) * (lit[:, k] & lit[:, k + 1])
+    place, step = np.nonzero(lit[:, :-1] != lit[:, 1:])
+    start, stop = caster.lit_part(place, step * _FINE, lit[place, step])
+    middle = steps.fine_direction[np.rint(0.5 * (start + stop)).astype(np.int64)]
+    beam[place, step] = ((stop - start) / _FINE).astype(np.float32) * _cosine(normal[place], middle)
+    found = np.empty_like(beam)
+    found[rays.order] = beam
     return found
 
 
@@ -91,44 +91,53 @@ class _SunCaster:
     def __init__(
         self, loaded: LoadedWorld, rays: SiteRays, directions: Float64[np.ndarray, "fine 3"]
     ) -> None:
-        mi, dr = backend.modules()
         self.scene, self.rays = loaded.scene, rays
-        self.directions = mi.Float(directions.astype(np.float32).reshape(-1))
-        self.everywhere = dr.arange(mi.UInt, len(rays.order))
-        dr.eval(self.everywhere)
+        self.directions = backend.upload(directions.astype(np.float32))
 
-    def lit_all(self, moment: int) -> Bool[np.ndarray, "sites"]:
-        """Whether each place sees the sun at one moment."""
+    def at_step_ends(self, ends: int) -> Bool[np.ndarray, "sites ends"]:
+        """Whether each place sees the sun at the beginning of the day, and at the end of each step."""
         mi, dr = backend.modules()
-        return self._lit(self.everywhere, dr.opaque(mi.UInt, moment), coherent=True)
+        sites = len(self.rays.order)
+        lit = dr.empty(mi.Bool, sites * ends)
+        width = dr.opaque(mi.UInt, ends)
+        for lanes in launches(sites, ends):
+            seen = self._lit(lanes.place, lanes.row * _FINE, lanes.active)
+            dr.scatter(lit, seen, lanes.place * width + lanes.row, lanes.active, mode=dr.ReduceMode.Permute)
+            dr.eval(lit)
+        return np.asarray(lit).reshape(sites, ends)
 
     def lit_part(
-        self, place: Int64[np.ndarray, "changed"], first: int, lit_before: Bool[np.ndarray, "changed"]
+        self,
+        place: Int64[np.ndarray, "changed"],
+        first: Int64[np.ndarray, "changed"],
+        lit_before: Bool[np.ndarray, "changed"],
     ) -> tuple[Float64[np.ndarray, "changed"], Float64[np.ndarray, "changed"]]:
-        """First and last moment [eighths] of the lit part of the step that begins at `first`, where its ends differ.
+        """First and last moment [eighths] of the lit part of steps at whose ends the answers differ.
 
         Parameters
         ----------
         place : int64 (changed,)
-            Places whose sun appears or disappears within the step.
-        first : int
+            Places whose sun appears or disappears.
+        first : int64 (changed,)
             Beginning of the step [eighths].
         lit_before : bool (changed,)
             Whether they are lit at that beginning.
         """
-        mi, _ = backend.modules()
-        low = np.full(len(place), first, np.uint32)
-        where = mi.UInt(place.astype(np.uint32))
+        low = first.astype(np.uint32)
+        where = backend.upload(place.astype(np.uint32))
         for halving in range(_HALVINGS if len(place) else 0):
             middle = low + np.uint32(_FINE >> (halving + 1))
-            same = self._lit(where, mi.UInt(middle), coherent=False) == lit_before
+            same = np.asarray(self._lit(where, backend.upload(middle), True)) == lit_before
             low = np.where(same, middle, low)
         edge = low.astype(np.float64) + 0.5
-        return np.where(lit_before, first, edge), np.where(lit_before, edge, first + _FINE)
+        begin = first.astype(np.float64)
+        return np.where(lit_before, begin, edge), np.where(lit_before, edge, begin + _FINE)
 
-    def _lit(self, place: Any, moment: Any, coherent: bool) -> Bool[np.ndarray, "places"]:
+    def _lit(self, place: Any, moment: Any, active: Any) -> Any:
+        """Whether places (device) see the sun at moments [eighths, device]."""
         mi, dr = backend.modules()
-        sun = dr.gather(mi.Vector3f, self.directions, moment)
-        faces = (sun.z > 0.0) & (dr.dot(dr.gather(mi.Vector3f, self.rays.normal, place), sun) > 0.0)
-        blocked = self.scene.ray_test(self.rays.start(place, sun, faces), coherent=coherent, active=faces)
-        return np.asarray(faces & ~blocked)
+        sun = dr.gather(mi.Vector3f, self.directions, moment, active)
+        facing = dr.dot(dr.gather(mi.Vector3f, self.rays.normal, place, active), sun) > 0.0
+        asked = facing & (sun.z > 0.0) & active
+        blocked = self.scene.ray_test(self.rays.start(place, sun, asked), coherent=False, active=asked)
+        return asked & ~blocked

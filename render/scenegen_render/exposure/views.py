@@ -37,11 +37,10 @@ def mean_over_list(gather: Any, values: Any, directions: int) -> Any:
 
 def open_share(gather: UInt32[np.ndarray, "directions sites"]) -> Float32[np.ndarray, "sites"]:
     """Share of the directions that meet the open sky above the horizon."""
-    mi, _ = backend.modules()
     directions, sites = gather.shape
     is_sky = np.zeros(sites + SKY_BINS, np.float32)
     is_sky[sites + 1 :] = 1.0
-    return np.asarray(mean_over_list(mi.UInt(gather.reshape(-1)), mi.Float(is_sky), directions))
+    return np.asarray(mean_over_list(backend.upload(gather), backend.upload(is_sky), directions))
 
 
 def shares(
@@ -58,15 +57,17 @@ def shares(
     group : uint8 (sites,)
     groups : int
     """
-    mi, _ = backend.modules()
+    mi, dr = backend.modules()
     directions, sites = gather.shape
     counters = groups + 1
     slot = np.concatenate([group, np.full(SKY_BINS, groups, np.uint8)]).astype(np.uint64)
     word, shift = slot // _PER_WORD, slot % _PER_WORD * _BITS
     one = np.uint64(1) << shift
     one[sites] = 0  # bin 0: the horizon and below
-    tables = [mi.UInt64(np.where(word == w, one, np.uint64(0))) for w in range(-(-counters // _PER_WORD))]
-    words = _sums(mi.UInt(gather.reshape(-1)), tuple(tables), directions)
+    tables = [
+        dr.opaque(mi.UInt64(np.where(word == w, one, np.uint64(0)))) for w in range(-(-counters // _PER_WORD))
+    ]
+    words = _sums(backend.upload(gather), tuple(tables), directions)
     counts = np.empty((sites, counters), np.float32)
     mask = np.uint64((1 << _BITS) - 1)
     for w, packed in enumerate(np.asarray(x) for x in words):
