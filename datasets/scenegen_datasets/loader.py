@@ -153,7 +153,9 @@ class PairDataset:
             sample |= {layer.name: arrays[layer.name] for layer in group if layer.name in self.layers}
         if self._previous:
             before = checked(self._source.rows[position - 1])
-            sample[PREVIOUS] = self._reader.arrays(before, job, "thermal.png", (LAYERS["thermal"],))["thermal"]
+            sample[PREVIOUS] = self._reader.arrays(before, job, "thermal.png", (LAYERS["thermal"],))[
+                "thermal"
+            ]
         return sample | {
             "key": job.key(int(row["frame"])),
             "map": job.map,

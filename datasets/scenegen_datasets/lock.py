@@ -13,7 +13,18 @@ from scenegen.foundation.canonical import digest
 VOLATILE_KEYS = ("pairs", "out", "jobs", "engine", "part")
 """Top-level recipe keys that do not change any sample, hence not part of ``recipe_id``."""
 
-_PACKAGES = {"numpy": "numpy", "cv2": "opencv-python-headless", "OpenEXR": "OpenEXR", "scipy": "scipy"}
+_PACKAGES = {
+    "numpy": "numpy",
+    "cv2": "opencv-python-headless",
+    "OpenEXR": "OpenEXR",
+    "scipy": "scipy",
+    "pvlib": "pvlib",
+    "trimesh": "trimesh",
+    "shapely": "shapely",
+    "manifold3d": "manifold3d",
+    "earcut": "mapbox-earcut",
+}
+"""What takes part in making bytes, besides the renderer: arrays, codecs, sun, geometry."""
 
 _LEVELS = {
     "-v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"},
@@ -33,7 +44,7 @@ def stable(recipe: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def fingerprint(render: Mapping[str, str]) -> dict[str, str]:
-    """Versions and CPU class that decide bytes: what the renderer says of itself, plus numpy, cv2, OpenEXR, CPU."""
+    """Versions and CPU class that decide bytes: what the renderer says of itself, our libraries, the CPU."""
     return {**render, **{name: _version(package) for name, package in _PACKAGES.items()}, "cpu": cpu_class()}
 
 

@@ -29,7 +29,9 @@ class ShardReader:
         self._root = root
         self._open: OrderedDict[str, int] = OrderedDict()
 
-    def arrays(self, row: np.void, job: ClipJob, member: str, layers: tuple[Layer, ...]) -> dict[str, NDArray[Any]]:
+    def arrays(
+        self, row: np.void, job: ClipJob, member: str, layers: tuple[Layer, ...]
+    ) -> dict[str, NDArray[Any]]:
         """Decode one member of the frame of `job` that `row` (checked) describes.
 
         Raises

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from scenegen.foundation import canonical
-from scenegen.foundation.atomic import make_directories, remove, remove_partials, write_atomic
+from scenegen.foundation.atomic import remove, remove_partials, write_atomic
 from scenegen.foundation.errors import DatasetError, InputError, NoSpaceError
 from scenegen_datasets.lock import stable
 from scenegen_datasets.receipt import promised_size, receipt_paths, shard_of
@@ -59,7 +59,6 @@ def create_or_open(
         remove(root / MANIFEST)
         write_atomic(root / RECIPE, recipe_yaml.encode())
         write_atomic(root / LOCK, canonical.pretty(new))
-    make_directories(root, "shards")
 
 
 def check_output(root: Path) -> None:

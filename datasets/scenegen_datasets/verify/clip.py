@@ -49,6 +49,7 @@ class ClipCheck:
     digest: str = ""
     line: bytes = b""
     rows: bytes = b""
+    fingerprint: str = ""
 
 
 def check_clip(root: Path, path: str, quick: bool) -> ClipCheck:
@@ -74,6 +75,7 @@ def check_clip(root: Path, path: str, quick: bool) -> ClipCheck:
         digest=digest,
         line=canonical.canonical(clip_line(receipt, digest)),
         rows=rows_of(receipt).tobytes(),
+        fingerprint=receipt.fingerprint,
     )
 
 

@@ -12,9 +12,10 @@ from scenegen.foundation.errors import DatasetError
 from scenegen_datasets.content import content_id
 from scenegen_datasets.description import read_description
 from scenegen_datasets.index import ROW, open_index
+from scenegen_datasets.lock import fingerprint_id, recipe_id
 from scenegen_datasets.manifest import file_sha256, read_manifest
 from scenegen_datasets.seal import read_bounded
-from scenegen_datasets.store import CLIPS, DATASET, INDEX, MANIFEST, RUN_LOG, WRITER_LOCK, read_lock
+from scenegen_datasets.store import CLIPS, DATASET, INDEX, LOCK, MANIFEST, RUN_LOG, WRITER_LOCK, read_lock
 from scenegen_datasets.verify.clip import ClipCheck
 from scenegen_datasets.verify.report import Finding
 
@@ -25,6 +26,7 @@ def check_tree(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
     """Check the whole against its clips; `checks` in any order."""
     sound = [c for _, c in sorted((c.job, c) for c in checks if c.job is not None)]
     yield from _leaks(sound)
+    yield from _lock(root, sound)
     files, odd = _walk(root)
     yield from odd
     if DATASET not in files:
@@ -41,9 +43,21 @@ def check_tree(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
     yield from _index(root, sound)
 
 
+def _lock(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
+    """The lock must be true to itself, and every clip made by software it names."""
+    lock = read_lock(root)
+    if recipe_id(lock["recipe"], lock.get("scene_semantics", 0)) != lock["recipe_id"]:
+        yield Finding(LOCK, "recipe_id is not that of the recipe in it")
+    known = {fingerprint_id(print_) for print_ in [lock["fingerprint"], *lock["mixed_with"]]}
+    for check in checks:
+        if check.fingerprint not in known:
+            yield Finding(check.receipt, f"made by software ({check.fingerprint}) that {LOCK} does not name")
+
+
 def _leaks(checks: Sequence[ClipCheck]) -> Iterator[Finding]:
     splits: dict[tuple[str, int], str] = {}
     names: dict[str, str] = {}
+    ordinals: dict[int, str] = {}
     for check in checks:
         job = check.job
         assert job is not None
@@ -51,6 +65,8 @@ def _leaks(checks: Sequence[ClipCheck]) -> Iterator[Finding]:
             yield Finding(check.receipt, f"world {job.map}-{job.world:05d} is in two splits")
         if names.setdefault(job.name, check.receipt) != check.receipt:
             yield Finding(check.receipt, f"clip {job.name} is there twice")
+        if ordinals.setdefault(job.ordinal, check.receipt) != check.receipt:
+            yield Finding(check.receipt, f"has the place in the plan of {ordinals[job.ordinal]}")
 
 
 def _walk(root: Path) -> tuple[set[str], list[Finding]]:

@@ -15,7 +15,7 @@ from scenegen_datasets.encode import EncodedFrame, FrameMeta, encode_frame
 from scenegen_datasets.finish import finish
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import DEFAULT_LAYERS
-from scenegen_datasets.lock import make_lock
+from scenegen_datasets.lock import fingerprint, fingerprint_id, make_lock
 from scenegen_datasets.store import create_or_open, finished
 from scenegen_render.frame import Frame
 from scenegen_render.sensor.reading import Reading
@@ -24,6 +24,7 @@ SHAPE = (12, 16)
 PAIRS = 3
 K = np.array([[14.0, 0.0, 8.0], [0.0, 14.0, 6.0], [0.0, 0.0, 1.0]])
 RENDER = {"mitsuba": "3.9.1", "variant": "llvm_ad_mono"}
+FINGERPRINT = fingerprint_id(fingerprint(RENDER))
 
 
 def jobs(clips: int, pairs: int = PAIRS) -> list[ClipJob]:
@@ -122,7 +123,7 @@ def make(
         have = finished(root)
         for job in plan[::order]:
             if job.name not in have:
-                commit_clip(root, record(job), encoded(job, layers), fingerprint="f" * 16)
+                commit_clip(root, record(job), encoded(job, layers), fingerprint=FINGERPRINT)
         if done:
             finish(root, plan)
     return root

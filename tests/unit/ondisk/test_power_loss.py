@@ -136,7 +136,7 @@ def wrong_clips(root: Path, clean: dict[str, bytes]) -> list[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2])
 def test_no_power_cut_leaves_a_clip_that_only_looks_whole(
     fakes: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seed: int
 ) -> None:
@@ -148,7 +148,7 @@ def test_no_power_cut_leaves_a_clip_that_only_looks_whole(
     clean = fakes.tree(root)
     rng = np.random.default_rng(seed)
     cuts = whole = 0
-    for number, state in enumerate(states(calls, root, tmp_path / "state", rng, thin=1)):
+    for number, state in enumerate(states(calls, root, tmp_path / "state", rng, thin=3)):
         cuts += 1
         assert wrong_clips(state, clean) == []
         if (state / "dataset.json").exists() and (state / "dataset.json").read_bytes() == clean[

@@ -176,6 +176,7 @@ def forge(dataset: Path, job: object, change: Callable[[dict[str, object]], None
         (lambda b: b.update(schema_version=2), "update scenegen"),
         (lambda b: b.update(frames={"a": 1}), "not a receipt"),
         (lambda b: b.pop("clip"), "not a receipt"),
+        (lambda b: b.update(fingerprint="0" * 16), "made by software (0000000000000000)"),
         (lambda b: b.update(layers=["thermal", "x-ray"]), "unknown layers"),
     ],
 )
@@ -227,9 +228,22 @@ def test_a_world_in_two_splits_is_found(fakes: ModuleType, tmp_path: Path, found
 
     root = fakes.make(tmp_path / "d", 1, done=False)
     job = replace(fakes.jobs(2)[1], split="test")
-    commit_clip(root, fakes.record(job), fakes.encoded(job), fingerprint="f")
+    commit_clip(root, fakes.record(job), fakes.encoded(job), fingerprint=fakes.FINGERPRINT)
     finish(root, [*fakes.jobs(1), job])
     assert "in two splits" in "".join(found(root).values())
+
+
+def test_two_clips_in_one_place_of_the_plan_are_found(dataset: Path, found: Found, fakes: ModuleType) -> None:
+    forge(dataset, fakes.jobs(6)[5], lambda b: b["clip"]["job"].update(ordinal=4))  # type: ignore[index]
+    assert "has the place in the plan of" in found(dataset)[fakes.jobs(6)[5].receipt]
+
+
+def test_a_lock_that_contradicts_itself_is_found(dataset: Path, found: Found) -> None:
+    lock = json.loads((dataset / "recipe.lock.json").read_bytes())
+    lock["recipe"]["map"] = "field"
+    (dataset / "recipe.lock.json").write_bytes(pretty(lock))
+    reseal(dataset)
+    assert "recipe_id is not that" in found(dataset)["recipe.lock.json"]
 
 
 def test_a_clip_lost_with_its_receipt_is_missed(dataset: Path, found: Found, fakes: ModuleType) -> None:
@@ -319,19 +333,21 @@ def test_random_metadata_damage_is_always_found(dataset: Path, found: Found) -> 
             unsealed("receipt", bytes(flipped), "x")
 
 
-def test_a_dying_decoder_is_a_finding(dataset: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_dying_decoder_is_a_finding(
+    fakes: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A process that dies on one clip costs a finding, not the verification."""
     import scenegen_datasets.verify as module
 
     monkeypatch.setattr(module, "check_clip", die_on_one)
-    report = verify(dataset, jobs=2)
-    assert [f.file for f in report.findings if "died" in f.reason] == ["receipts/test/city-00002/000.json"]
+    report = verify(fakes.make(tmp_path / "d", 2), jobs=2)
+    assert [f.file for f in report.findings if "died" in f.reason] == ["receipts/train/city-00000/001.json"]
 
 
 def die_on_one(root: Path, path: str, quick: bool) -> object:
     from scenegen_datasets.verify.clip import check_clip
 
-    if "00002/000" in path:
+    if "00000/001" in path:
         os.abort()
     return check_clip(root, path, quick)
 
