@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+
 from scenegen.classes import Semantic
 from scenegen.geometry.facade import BLANK, DOOR, WINDOW, Walls, facades
 from scenegen.geometry.part import face_normals
@@ -76,7 +77,9 @@ def test_reveals_face_into_the_opening(part):
     reveal = (part.surface == 3) & (np.abs(normals[:, 1]) < 0.5)
     assert area[reveal].sum() == pytest.approx(0.1 * (5 * 2 * (2.0 + 2.2) + 18 * 2 * (2.0 + 1.5)))
     panes = part.vertices[part.faces[part.semantic == Semantic.WINDOW]].mean(axis=1)
-    near = panes[np.argmin(np.linalg.norm(middle[reveal][:, None, [0, 2]] - panes[None][..., [0, 2]], axis=2), axis=1)]
+    near = panes[
+        np.argmin(np.linalg.norm(middle[reveal][:, None, [0, 2]] - panes[None][..., [0, 2]], axis=2), axis=1)
+    ]
     assert ((near - middle[reveal]) * normals[reveal])[:, [0, 2]].sum(axis=1).min() > 0
 
 
@@ -95,6 +98,8 @@ def test_the_wall_is_closed_around_its_openings(part):
 
 
 def test_rows_of_sites_are_finer_near_the_ground(part):
-    heights = np.unique(np.round(part.site_position[np.unique(part.corner_site[part.surface == 3]), 2] - 10.0, 3))
+    heights = np.unique(
+        np.round(part.site_position[np.unique(part.corner_site[part.surface == 3]), 2] - 10.0, 3)
+    )
     assert heights[:2] == pytest.approx([0.15, 0.6])
     assert np.diff(heights).max() < 3.6

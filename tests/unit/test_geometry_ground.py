@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
+
 from scenegen.geometry.ground import Region, drape
 from scenegen.geometry.part import face_normals
 from scenegen.geometry.planar import triangulate

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
+
 from scenegen.classes import Semantic
 from scenegen.geometry.boxes import boxes
 from scenegen.geometry.builder import GeometryBuilder
@@ -47,7 +48,9 @@ def test_a_triangle_is_a_patch_with_two_equal_corners():
     builder.add(patches(gable, 2.0, ZERO, ZERO, ZERO + 1))
     merged = builder.merge()
     assert float(merged.sites.area.sum()) == pytest.approx(15.0, rel=1e-5)
-    assert face_areas(merged.mesh.vertices.astype(np.float64), merged.mesh.faces.astype(np.int64)).min() > 1e-6
+    assert (
+        face_areas(merged.mesh.vertices.astype(np.float64), merged.mesh.faces.astype(np.int64)).min() > 1e-6
+    )
 
 
 def test_the_builder_refuses_a_site_of_two_surfaces():
@@ -60,7 +63,9 @@ def test_the_builder_refuses_a_site_of_two_surfaces():
 
 
 def test_boxes_are_closed_but_for_the_underside():
-    part = boxes(np.array([[1.0, 2.0, 3.0]]), np.array([[4.0, 2.0, 1.5]]), np.array([0.7]), ZERO, ZERO, ZERO + 1)
+    part = boxes(
+        np.array([[1.0, 2.0, 3.0]]), np.array([[4.0, 2.0, 1.5]]), np.array([0.7]), ZERO, ZERO, ZERO + 1
+    )
     normals, area = face_normals(part.vertices, part.faces)
     assert area.sum() == pytest.approx(2 * (4 + 2) * 1.5 + 8)
     outward = part.vertices[part.faces].mean(axis=1) - np.array([1.0, 2.0, 3.75])
@@ -74,7 +79,9 @@ def test_a_copy_is_turned_scaled_and_sheared():
         template, position, np.array([np.pi / 2]), np.array([[1.0, 1.0, 2.0]]),
         np.array([[5, 6, 7]]), np.array([3]), np.array([[0.1, 0.0]]),
     )  # fmt: skip
-    expected = np.column_stack([-template.vertices[:, 1], template.vertices[:, 0], 2 * template.vertices[:, 2]])
+    expected = np.column_stack(
+        [-template.vertices[:, 1], template.vertices[:, 0], 2 * template.vertices[:, 2]]
+    )
     expected[:, 2] += 0.1 * expected[:, 0]
     assert np.allclose(part.vertices, expected + position)
     assert np.allclose(np.linalg.norm(part.site_normal, axis=1), 1.0)
@@ -127,7 +134,11 @@ def test_placement_along_a_line_and_keeping_apart():
     assert np.allclose(heading, [0, np.pi / 2])
     shapes = rectangles(np.array([[0.0, 0], [1, 0], [9, 0]]), np.full(3, 4.0), np.full(3, 2.0), np.zeros(3))
     assert first_come(shapes).tolist() == [True, False, True]
-    assert clear_of(shapes, np.array([shapely.box(11.5, -1, 12, 1)], dtype=object), 1.0).tolist() == [True, True, False]
+    assert clear_of(shapes, np.array([shapely.box(11.5, -1, 12, 1)], dtype=object), 1.0).tolist() == [
+        True,
+        True,
+        False,
+    ]
 
 
 def test_concatenation_shifts_indices():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
+
 from scenegen.geometry.planar import triangulate
 from scenegen.geometry.scatter import contact_points, graded_points, hexagonal
 

@@ -1,4 +1,4 @@
-"""Upright boxes in any number: roof units, stacks, kiosks, far buildings. Five faces, since the underside is never seen."""
+"""Upright boxes in any number. Five faces each, since the underside is never seen."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parts in, world arrays out: merges, drops faces without area, derives what sites stand for, checks invariants."""
+"""Parts in, world arrays out: merged, without slivers, with the labels of sites, invariants checked."""
 
 from __future__ import annotations
 
@@ -51,8 +51,8 @@ class GeometryBuilder:
         Raises
         ------
         AssertionError
-            If an index is out of range, a number is not finite or a site is shared by two surfaces or objects: a
-            mistake in the map's code.
+            If an index is out of range, a number is not finite or a site is shared by two surfaces or
+            objects: a mistake in the map's code.
         """
         part, face_area = _without_slivers(concatenate(self._parts))
         assert np.isfinite(part.vertices).all() and np.abs(part.vertices).max() < MAX_COORDINATE_M
@@ -75,7 +75,7 @@ class GeometryBuilder:
 
 
 def _without_slivers(part: Part) -> tuple[Part, np.ndarray]:
-    """Drop faces without area, then vertices and sites nobody uses; returns the areas [m^2] of the faces that stay."""
+    """Drop faces without area, then unused vertices and sites; returns the areas [m^2] of what stays."""
     area = face_areas(part.vertices.astype(np.float32).astype(np.float64), part.faces)
     keep = area > MIN_FACE_AREA_M2
     faces, corner_site = part.faces[keep], part.corner_site[keep]

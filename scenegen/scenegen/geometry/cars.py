@@ -17,7 +17,7 @@ LENGTH_M, WIDTH_M = 4.4, 1.8
 _RIM = 8
 
 _PROFILES = {
-    # x from rear to front, belt height, roof line: (rear screen foot, rear roof, front roof, windscreen foot), bonnet nose
+    # rear end, (feet of rear screen, roof's rear and front, foot of windscreen), heights of belt, roof, nose
     "saloon": (-2.2, (-1.75, -0.95, 0.35, 1.05), 0.92, 1.43, 0.72),
     "estate": (-2.2, (-2.1, -1.8, 0.35, 1.05), 0.94, 1.47, 0.74),
     "hatch": (-1.95, (-1.9, -1.35, 0.45, 1.1), 0.95, 1.50, 0.76),

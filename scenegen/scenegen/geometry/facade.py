@@ -1,8 +1,8 @@
 """Facades: planar walls with a grid of recessed windows and doors, all walls of a world at once.
 
-A wall is a tensor grid of lines: jambs of the window columns across, sills and heads of the storeys upwards. Its thermal
-sites are coarser than its vertices: one per crossing of every second pier with a spandrel, shared by all grid points around
-that crossing. A pane has one site.
+A wall is a tensor grid of lines: jambs of the window columns across, sills and heads of the storeys
+upwards. Its thermal sites are coarser than its vertices: one per crossing of every second pier with a
+spandrel, shared by all grid points around that crossing. A pane has one site.
 """
 
 from __future__ import annotations
@@ -99,8 +99,8 @@ def facades(walls: Walls, filling: Int64[np.ndarray, "cells"]) -> Part:
     ----------
     walls : Walls
     filling : int64 (cells,)
-        `BLANK`, `WINDOW` or `DOOR` for every cell of `Walls.cells`. Doors are honoured on the ground floor and reach
-        from the floor to the window's head; they lie flush.
+        `BLANK`, `WINDOW` or `DOOR` for every cell of `Walls.cells`. Doors are honoured on the ground floor
+        and reach from the floor to the window's head; they lie flush.
     """
     normal = _outward(walls)
     lattice = _lattice(walls, normal)
@@ -130,7 +130,7 @@ def _column_lines(walls: Walls, item: np.ndarray, i: np.ndarray) -> np.ndarray:
 
 
 def _row_lines(walls: Walls, item: np.ndarray, j: np.ndarray) -> np.ndarray:
-    """Height of grid line j above the ground floor [m]: foundation, plinth, sill and head of each storey, top."""
+    """Height of grid line j above the ground floor [m]: foundation, plinth, sills and heads, top."""
     storeys = walls.storeys[item]
     k = (j - 2) // 2
     floor = np.where(k > 0, walls.first_storey_m[item] + (k - 1) * walls.storey_m[item], 0.0)
@@ -139,7 +139,7 @@ def _row_lines(walls: Walls, item: np.ndarray, j: np.ndarray) -> np.ndarray:
     height = floor + np.where(j % 2 == 0, sill, head)
     plinth = np.minimum(_PLINTH_M, 0.5 * walls.first_sill_m[item])
     height = np.where(j == 0, -walls.foundation_m[item], np.where(j == 1, plinth, height))
-    return np.where(j == 2 * storeys + 2, (walls.top_m - walls.floor_m)[item], height)
+    return np.asarray(np.where(j == 2 * storeys + 2, (walls.top_m - walls.floor_m)[item], height))
 
 
 def _lattice(walls: Walls, normal: np.ndarray) -> _Lattice:
@@ -171,7 +171,7 @@ def _on_wall(walls: Walls, item: np.ndarray, x: np.ndarray, z: np.ndarray) -> np
 def _quad_filling(
     walls: Walls, filling: np.ndarray, item: np.ndarray, i: np.ndarray, j: np.ndarray
 ) -> np.ndarray:
-    """Filling of the window cell a quad lies in; piers and spandrels are blank, the strip below a door is the door."""
+    """Filling of the window cell a quad lies in; piers are blank, the strip below a door is the door."""
     storey = np.clip((j - 2) // 2, 0, walls.storeys[item] - 1)
     column = np.clip((i - 1) // 2, 0, walls.columns[item] - 1)
     cell = offsets(walls.columns * walls.storeys)[item] + storey * walls.columns[item] + column

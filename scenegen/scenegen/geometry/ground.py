@@ -1,7 +1,7 @@
-"""The ground: a conforming triangulation draped over a relief, with steps (kerbs, banks) where regions change level.
+"""The ground: a triangulated plan draped over a relief, with steps (kerbs, banks) where regions change level.
 
-A ray from above can never slip through: plan neighbours share vertices, and where their levels differ the gap is closed by
-vertical quads between duplicated vertices.
+A ray from above can never slip through: plan neighbours share vertices, and where their levels differ the
+gap is closed by vertical quads between duplicated vertices.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from scenegen.geometry.patch import quads_to_triangles
 from scenegen.geometry.planar import Triangulation
 
 _NUDGE_M = 0.04
-"""How far sites on a region's outline move inwards, so that they do not lie in the plane of a wall or kerb."""
+"""How far sites on a region's outline move inwards, to lie clear of the plane of a wall or kerb [m]."""
 
 Relief = Callable[[Float64[np.ndarray, "points 2"]], Float64[np.ndarray, "points"]]
 
@@ -144,8 +144,8 @@ def _site_frame(
     normals, area = face_normals(vertices, faces)
     corners = corner_site.ravel()
     weight = np.repeat(area, 3)
-    position = np.stack([np.bincount(corners, p, count) for p in vertices[faces.ravel()].T], axis=1)
-    position /= np.maximum(np.bincount(corners, minlength=count), 1)[:, None]
+    summed = np.stack([np.bincount(corners, p, count) for p in vertices[faces.ravel()].T], axis=1)
+    position = summed / np.maximum(np.bincount(corners, minlength=count), 1.0)[:, None]
     total = np.maximum(np.bincount(corners, weight, count), 1e-12)
 
     def mean(values: np.ndarray) -> np.ndarray:
@@ -153,7 +153,7 @@ def _site_frame(
         return np.stack(columns, axis=1)
 
     normal = mean(normals)
-    normal /= np.linalg.norm(normal, axis=1)[:, None]
+    normal = normal / np.linalg.norm(normal, axis=1)[:, None]
     pull = mean(vertices[faces].mean(axis=1)) - position
     length = np.linalg.norm(pull, axis=1)
     return position + pull * np.minimum(_NUDGE_M / np.maximum(length, 1e-9), 0.5)[:, None], normal

@@ -1,4 +1,4 @@
-"""Building blocks for templates: boxes, tubes, blobs and cards with a slot, a class and one or a few sites each."""
+"""Building blocks for templates: boxes, tubes and quads with a slot, a class and a few sites each."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A part: some triangles with what they are and where their heat lives; the builder merges parts into a world."""
+"""A part: some triangles, what they are, and where their heat lives; parts are merged into a world."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def face_areas(
 
 
 def _doubled_area_vectors(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
-    """Cross products of two edges, (3, faces): by column, which is several times faster than rows of three."""
+    """Cross products of two edges, (3, faces); by column, which is much faster than rows of three."""
     columns = [np.ascontiguousarray(vertices[:, k]) for k in range(3)]
     i, j, k = (np.ascontiguousarray(faces[:, n]) for n in range(3))
     origin = [c[i] for c in columns]

@@ -47,7 +47,7 @@ def patches(
     standoff_m: float = STANDOFF_M,
     lumped_rows: bool = False,
 ) -> Part:
-    """Tessellate quads; two corners may coincide (a triangle), the faces without area go when the world is merged.
+    """Tessellate quads; two corners may coincide (a triangle): faces without area go when parts are merged.
 
     Parameters
     ----------

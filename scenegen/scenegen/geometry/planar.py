@@ -1,9 +1,10 @@
 """Conforming triangulation of a plane cut into regions.
 
-Lines of the plan are noded on a fixed grid, split until every segment has an empty diametral circle, and thrown into one
-Delaunay triangulation together with free points. A segment whose diametral circle is empty is an edge of the Delaunay
-triangulation (Gabriel's criterion), so the result conforms to the plan without any constrained solver, and there are no
-T-junctions. Triangles get their region by flood fill: components of the dual graph cut along the plan's lines.
+Lines of the plan are noded on a fixed grid, split until every segment has an empty diametral circle, and
+thrown into one Delaunay triangulation together with free points. A segment whose diametral circle is empty
+is an edge of the Delaunay triangulation (Gabriel's criterion), so the result conforms to the plan without
+any constrained solver, and there are no T-junctions. Triangles get their region by flood fill: components
+of the dual graph cut along the plan's lines.
 """
 
 from __future__ import annotations
@@ -49,7 +50,8 @@ def triangulate(
     free_points : float64 (free, 2)
         Points wanted inside regions, in order of preference; those too close to a line are dropped.
     line_spacing_m : float or float64 (regions,)
-        Largest distance between points along the outline of each region [m]; the finest one holds where they meet.
+        Largest distance between points along the outline of each region [m]; the finest one holds where
+        they meet.
     far_spacing : (float, float)
         Distance from the origin [m] beyond which the spacing along lines grows, and the growth per metre.
     """
@@ -166,13 +168,13 @@ def _delaunay(points: np.ndarray) -> np.ndarray:
     a, b, c = (points[simplices[:, k]] for k in range(3))
     doubled = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     simplices[doubled < 0] = simplices[doubled < 0][:, [0, 2, 1]]
-    return simplices
+    return np.asarray(simplices)
 
 
 def _label(
     points: np.ndarray, triangles: np.ndarray, segments: np.ndarray, regions: Sequence[shapely.Polygon]
 ) -> np.ndarray:
-    """Region of each triangle: flood fill bounded by the plan's lines, one point-in-polygon query per component."""
+    """Region of each triangle: flood fill bounded by the plan's lines, one query per component."""
     edge = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
     code = edge[:, 0] * len(points) + edge[:, 1]
     walls = np.sort(segments, axis=1)
@@ -185,7 +187,7 @@ def _label(
     a, b = owner[left[open_edge]], owner[right[open_edge]]
     graph = coo_matrix((np.ones(len(a), np.int8), (a, b)), shape=(len(triangles), len(triangles)))
     _, component = connected_components(graph, directed=False)
-    return _component_regions(points, triangles, component, regions)[component]
+    return np.asarray(_component_regions(points, triangles, component, regions)[component])
 
 
 def _member(values: np.ndarray, ordered: np.ndarray) -> Bool[np.ndarray, "values"]:

@@ -46,7 +46,7 @@ def draw_relief(
         Shortest and longest wave; longer waves are higher in proportion.
     waves : int
     """
-    length = np.exp(rng.uniform(*np.log(wavelength_m), waves))
+    length = np.exp(rng.uniform(np.log(wavelength_m[0]), np.log(wavelength_m[1]), waves))
     heading = rng.uniform(0.0, 2 * np.pi, waves)
     vector = (2 * np.pi / length)[:, None] * np.column_stack([np.cos(heading), np.sin(heading)])
     share = length / length.sum()

@@ -16,7 +16,7 @@ def inset(ring: Float64[np.ndarray, "points 2"], distance_m: float) -> Float64[n
     after = after / np.linalg.norm(after, axis=1)[:, None]
     half = (before + after) / 2
     left = np.column_stack([-half[:, 1], half[:, 0]])
-    return ring + left * (distance_m / np.maximum((left**2).sum(axis=1), 0.2))[:, None]
+    return np.asarray(ring + left * (distance_m / np.maximum((left**2).sum(axis=1), 0.2))[:, None])
 
 
 def strip(
@@ -25,7 +25,7 @@ def strip(
     above: Float64[np.ndarray, "points 2"],
     above_m: float,
 ) -> Float64[np.ndarray, "points 4 3"]:
-    """Quads between two rings with the same points at two heights, one per edge, facing the right of the first ring."""
+    """Quads between two rings of equal size at two heights, one per edge, facing the right of the rings."""
     after_below, after_above = np.roll(below, -1, axis=0), np.roll(above, -1, axis=0)
     heights = (below_m, below_m, above_m, above_m)
     plan = (below, after_below, after_above, above)

@@ -40,7 +40,7 @@ def hexagonal(
 def graded_points(
     core: shapely.Polygon, far_m: float, spacing_m: float, rng: np.random.Generator
 ) -> Float64[np.ndarray, "points 2"]:
-    """Fine lattice on a polygon, then ever coarser bands around it, each twice as coarse and wide as the last.
+    """Fine lattice on a polygon, then bands around it, each twice as coarse and as wide as the last.
 
     Parameters
     ----------
@@ -53,15 +53,16 @@ def graded_points(
     rng : numpy.random.Generator
     """
     shapely.prepare(core)
-    points = hexagonal(*core.bounds, spacing_m, rng)
-    bands = [points[shapely.contains_xy(core, points)]]
     x0, y0, x1, y1 = core.bounds
+    points = hexagonal(x0, y0, x1, y1, spacing_m, rng)
+    bands = [points[shapely.contains_xy(core, points)]]
     inner, spacing = 0.0, spacing_m
     while inner < 2 * far_m:
         spacing = min(2.0 * spacing, far_m / 10)
         outer = inner + 4 * spacing
-        box = np.clip([x0 - outer, y0 - outer, x1 + outer, y1 + outer], 1.0 - far_m, far_m - 1.0)
-        ring = hexagonal(*box.tolist(), spacing, rng)
+        low_x, low_y = max(x0 - outer, 1.0 - far_m), max(y0 - outer, 1.0 - far_m)
+        high_x, high_y = min(x1 + outer, far_m - 1.0), min(y1 + outer, far_m - 1.0)
+        ring = hexagonal(low_x, low_y, high_x, high_y, spacing, rng)
         ring = ring[np.abs(ring).max(axis=1) < far_m - 0.3 * spacing]
         distance = shapely.distance(shapely.points(ring), core)
         bands.append(ring[(distance > inner + 0.3 * spacing) & (distance <= outer)])

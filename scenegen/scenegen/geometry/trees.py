@@ -1,7 +1,8 @@
 """Trees: trunk, branches and a crown of leaf cards around lumpy boughs; broad-leaved and conifer.
 
-A crown has six sites on an ellipsoid around all its leaves. Rays that leave the ellipsoid outwards never meet the crown
-again, so no standoff is needed for leaves, and each leaf card takes the site whose direction it lies in.
+A crown has six sites on an ellipsoid around all its leaves. Rays that leave the ellipsoid outwards never
+meet the crown again, so no standoff is needed for leaves, and each leaf card takes the site whose direction
+it lies in.
 """
 
 from __future__ import annotations
@@ -30,10 +31,10 @@ def _icosahedron() -> np.ndarray:
     p = [[-1, t, 0], [1, t, 0], [-1, -t, 0], [1, -t, 0], [0, -1, t], [0, 1, t], [0, -1, -t], [0, 1, -t]]
     p += [[t, 0, -1], [t, 0, 1], [-t, 0, -1], [-t, 0, 1]]
     points = np.array(p, np.float64)
-    return points / np.linalg.norm(points, axis=1)[:, None]
+    return np.asarray(points / np.linalg.norm(points, axis=1)[:, None])
 
 
-def broadleaf(rng: np.random.Generator, boughs: int = 6, cards: int = 46) -> Template:
+def broadleaf(rng: np.random.Generator, boughs: int = 6, cards: int = 42) -> Template:
     """A broad-leaved tree of unit height 1 and crown diameter about 0.75; scale it to size.
 
     Parameters
@@ -121,7 +122,7 @@ def _crown(
     first = [model.site(centre + d * hull, d / hull) for d in directions]
 
     def sites_of(points: np.ndarray) -> np.ndarray:
-        return first[0] + np.argmax(((points - centre) / radii) @ directions.T, axis=1)
+        return np.asarray(first[0] + np.argmax(((points - centre) / radii) @ directions.T, axis=1))
 
     for lump in lumps:
         model.mesh(lump, _ICOSAHEDRON_FACES, LEAVES, Semantic.TREE, sites_of(lump)[_ICOSAHEDRON_FACES])
@@ -139,7 +140,7 @@ def _cards(
     centre: np.ndarray,
     radii: np.ndarray,
 ) -> np.ndarray:
-    """Bent leaf cards on the skins of the boughs, facing away from the crown's middle, inside the ellipsoid."""
+    """Bent leaf cards on the skins of the boughs, facing away from the crown's middle."""
     bough = np.arange(cards) % len(boughs)
     direction = rng.normal(size=(cards, 3))
     direction /= np.linalg.norm(direction, axis=1)[:, None]
@@ -166,7 +167,7 @@ def shrub(rng: np.random.Generator, cards: int = 8) -> Template:
     first = [model.site(centre + d * radii, d) for d in directions]
 
     def sites_of(points: np.ndarray) -> np.ndarray:
-        return first[0] + np.argmax((points - centre) @ directions.T, axis=1)
+        return np.asarray(first[0] + np.argmax((points - centre) @ directions.T, axis=1))
 
     boughs = np.array([[-0.24, 0.0, 0.45], [0.24, 0.0, 0.48]])
     for middle in boughs:

@@ -14,7 +14,7 @@ MAX_VARIANTS = 4
 """Variants of one material in one world, at most."""
 
 ABSORPTANCE_SPREAD = 0.06
-"""Half-width of the uniform spread of solar absorptance around the table's value: soiling, age, colour batch."""
+"""Half-width of the spread of solar absorptance around the table's value: soiling, age, colour."""
 
 HEATED_ROOM_K = (292.0, 297.0)
 """Air temperature [K] of heated rooms, 19-24 degrees Celsius."""
@@ -63,7 +63,7 @@ class PaletteBuilder:
         return options[int(rng.integers(len(options)))]
 
     def only(self, name: str) -> int:
-        """The one variant of a material of which the world needs no more (glass, asphalt of the far ground)."""
+        """The one variant of a material of which the world needs no more."""
         return self.variants(name, 1)[0]
 
     def special(
@@ -74,7 +74,7 @@ class PaletteBuilder:
         interior_K: float = float("nan"),
         prescribed_K: float = float("nan"),
     ) -> int:
-        """Add a variant with properties of its own (paint on asphalt, water at a known temperature), once per key.
+        """Add a variant with properties of its own (paint on asphalt, a pond of known warmth), once per key.
 
         Counts towards the variants of the material; the key separates it from the drawn ones.
         """
@@ -86,7 +86,9 @@ class PaletteBuilder:
                     Surface(
                         material=drawn.material,
                         emissivity=drawn.emissivity,
-                        solar_absorptance=drawn.solar_absorptance if solar_absorptance is None else solar_absorptance,
+                        solar_absorptance=drawn.solar_absorptance
+                        if solar_absorptance is None
+                        else solar_absorptance,
                         interior_K=interior_K if np.isfinite(interior_K) else drawn.interior_K,
                         prescribed_K=prescribed_K,
                     )

@@ -51,7 +51,7 @@ def _balcony() -> Template:
 def build_balconies(
     walls: Walls, filling: np.ndarray, buildings: Sequence[Building], rng: np.random.Generator
 ) -> Part:
-    """Balconies at every second or third window column of the walls chosen for them, above the ground floor."""
+    """Balconies at every second or third window column of chosen walls, above the ground floor."""
     wall, column, storey = walls.cells()
     chosen = np.array([b.object for b in buildings if b.style.balconies], np.int64)
     length = np.linalg.norm(walls.end - walls.start, axis=1)

@@ -41,7 +41,7 @@ class Bend:
     def __call__(self, xy: Float64[np.ndarray, "points 2"]) -> Float64[np.ndarray, "points 2"]:
         """Displaced points."""
         wave = np.sin(xy[:, :1] * self.wave_vector[:, 0] + xy[:, 1:] * self.wave_vector[:, 1] + self.phase)
-        return xy + np.column_stack([(wave * self.shift_m[:, k]).sum(axis=1) for k in (0, 1)])
+        return np.asarray(xy + np.column_stack([(wave * self.shift_m[:, k]).sum(axis=1) for k in (0, 1)]))
 
     def line(self, xy: Float64[np.ndarray, "points 2"]) -> Float64[np.ndarray, "bent 2"]:
         """A polyline in chords short enough to look curved, displaced."""

@@ -20,7 +20,8 @@ class Volume:
     Attributes
     ----------
     rings : tuple of float64 (points, 2)
-        Outer ring counter-clockwise, then courtyards clockwise; open. A pitched roof wants one ring of four points.
+        Outer ring counter-clockwise, then courtyards clockwise; open. A pitched roof wants one ring of four
+        points.
     floor_m : float
         Floor of its lowest storey [m].
     storeys : int
@@ -96,7 +97,8 @@ def fit_footprint(
     Returns
     -------
     rings, front : tuple of float64 (points, 2), float64 (2, 2)
-        Rings in the plan; middle of the front wall and of the sidewalk before it. None if the lot is too small.
+        Rings in the plan; middle of the front wall and of the sidewalk before it. None if the lot is too
+        small.
     """
     length, depth = rng.uniform(*wish.length_m), rng.uniform(*wish.depth_m)
     setback, lean = rng.uniform(*wish.setback_m), rng.uniform(-0.2, 0.2)

@@ -19,6 +19,7 @@ from scenegen.maps.city.streets import draw_streets
 from scenegen.maps.city.terrain import build_terrain
 from scenegen.maps.city.traffic import build_traffic
 from scenegen.maps.city.uses import Use
+from scenegen.maps.city.workshop import Workshop
 from scenegen.materials.palette import PaletteBuilder
 from scenegen.world import World
 
@@ -42,16 +43,17 @@ def build_city(knobs: CityKnobs, rng: np.random.Generator) -> World:
     palette.variants("asphalt_aged", 3)  # the fourth is its paint
     plan = draw_streets(extent, knobs.block_area_m2, own.uniform(*knobs.street_bend_m), streets)
     relief = draw_relief(hills, hills.uniform(*knobs.relief_m), (280.0, 900.0))
-    layout = lay_out(plan, knobs, relief, palette, builder, lots)
+    shop = Workshop(knobs, relief, palette, builder)
+    layout = lay_out(plan, shop, lots)
     parks = {k: plan_park(b.yard, parks_rng) for k, b in enumerate(layout.blocks) if b.use is Use.PARK}
     gear = draw_roof_gear(layout.buildings, gear_rng)
 
-    builder.add(build_terrain(plan, layout, parks, knobs, relief, palette, builder, ground))
+    builder.add(build_terrain(plan, layout, parks, shop, ground))
     builder.add(build_shells(layout.buildings, gear.plans, walls), *gear.parts)
-    cars, car_count = build_traffic(plan, layout, knobs, relief, palette, builder, cars_rng)
-    furniture, posts = build_furniture(plan, parks, relief, palette, builder, posts_rng)
-    trees, tree_count = build_greenery(layout, parks, posts, knobs, relief, palette, builder, green)
-    builder.add(*cars, *furniture, *trees, *far_objects(plan, relief, palette, builder, far))
+    cars, car_count = build_traffic(plan, layout, shop, cars_rng)
+    furniture, posts = build_furniture(plan, parks, shop, posts_rng)
+    trees, tree_count = build_greenery(layout, parks, posts, shop, green)
+    builder.add(*cars, *furniture, *trees, *far_objects(plan, shop, far))
     merged = builder.merge()
     half = _inner_half(plan.outline)
     return World(
@@ -78,7 +80,7 @@ def build_city(knobs: CityKnobs, rng: np.random.Generator) -> World:
 
 
 def _inner_half(outline: shapely.Polygon) -> float:
-    """Half the side [m] of the largest upright square around the origin that keeps inside the detailed part."""
+    """Half the side [m] of the largest upright square around the origin inside the detailed part."""
     reach = np.linspace(50.0, 600.0, 276)
     inner = outline.buffer(-_MARGIN_M)
     fits = [inner.contains(shapely.box(-r, -r, r, r)) for r in reach]

@@ -7,14 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from scenegen.geometry.builder import GeometryBuilder
-from scenegen.geometry.relief import WaveRelief
 from scenegen.maps.city.buildings import Building, Volume, Wish, fit_footprint, outline_of, rings_of
-from scenegen.maps.city.knobs import CityKnobs
 from scenegen.maps.city.lots import Lot
 from scenegen.maps.city.styles import Kind, Roof, draw_style
 from scenegen.maps.city.uses import Use
-from scenegen.materials.palette import PaletteBuilder
+from scenegen.maps.city.workshop import Workshop
 
 _BELOW_GROUND_M = 0.8
 _KERB_AND_STEP_M = 0.18
@@ -34,40 +31,20 @@ class Constructor:
 
     Attributes
     ----------
-    knobs : CityKnobs
-    relief : WaveRelief
-    palette : PaletteBuilder
-    builder : GeometryBuilder
-        Hands out instance ids.
+    shop : Workshop
     tower_share, terrace_storeys : float
-        Of this world: share of towers among office and estate lots; mean storeys of perimeter blocks.
+        Of this world: share of towers on estates; mean storeys of perimeter blocks.
     """
 
-    knobs: CityKnobs
-    relief: WaveRelief
-    palette: PaletteBuilder
-    builder: GeometryBuilder
+    shop: Workshop
     tower_share: float
     terrace_storeys: float
 
     @staticmethod
-    def draw(
-        knobs: CityKnobs,
-        relief: WaveRelief,
-        palette: PaletteBuilder,
-        builder: GeometryBuilder,
-        rng: np.random.Generator,
-    ) -> Constructor:
+    def draw(shop: Workshop, rng: np.random.Generator) -> Constructor:
         """Draw the world's own values from the knobs."""
-        low, high = knobs.storeys
-        return Constructor(
-            knobs,
-            relief,
-            palette,
-            builder,
-            rng.uniform(*knobs.tower_share),
-            rng.uniform(0.5 * (low + high), high),
-        )
+        low, high = shop.knobs.storeys
+        return Constructor(shop, rng.uniform(*shop.knobs.tower_share), rng.uniform(0.5 * (low + high), high))
 
     def on_lot(self, lot: Lot, use: Use, rng: np.random.Generator) -> Building | None:
         """A detached building, or None where nothing sensible fits."""
@@ -80,23 +57,23 @@ class Constructor:
             return None
         rings, front = fit
         form = _form(kind, rings, rng)
-        style = draw_style(kind, form, self.palette, rng)
+        style = draw_style(kind, form, self.shop.palette, rng)
         storeys = self._storeys(kind, rng)
         floor, depth = self._stand(rings)
         volumes: tuple[Volume, ...] = (Volume(rings, floor, storeys, depth, form),)
         if kind is Kind.TOWER:
             volumes = self._tower(volumes[0], style.first_storey_m + style.storey_m, rng)
-        return Building(kind, self.builder.new_objects(), style, volumes, outline_of(rings), front)
+        return Building(kind, self.shop.builder.new_objects(), style, volumes, outline_of(rings), front)
 
     def terrace(self, sector: shapely.Polygon, rng: np.random.Generator) -> Building:
         """A building of a perimeter block, wall to wall with its neighbours."""
         form = Roof.MANSARD if rng.uniform() < 0.45 else Roof.FLAT
-        style = draw_style(Kind.TERRACE, form, self.palette, rng)
+        style = draw_style(Kind.TERRACE, form, self.shop.palette, rng)
         storeys = max(2, round(rng.normal(self.terrace_storeys, 0.9)) - (form is Roof.MANSARD))
         rings = rings_of(sector)
         floor, depth = self._stand(rings)
         volume = Volume(rings, floor, storeys, depth, form)
-        return Building(Kind.TERRACE, self.builder.new_objects(), style, (volume,), sector)
+        return Building(Kind.TERRACE, self.shop.builder.new_objects(), style, (volume,), sector)
 
     def _kind(self, use: Use, rng: np.random.Generator) -> Kind:
         choice = rng.uniform()
@@ -109,7 +86,7 @@ class Constructor:
         return Kind.HOUSE if choice < 0.88 else Kind.APARTMENTS
 
     def _storeys(self, kind: Kind, rng: np.random.Generator) -> int:
-        low, high = self.knobs.storeys
+        low, high = self.shop.knobs.storeys
         if kind is Kind.SHED:
             return 1
         if kind is Kind.HOUSE:
@@ -118,7 +95,7 @@ class Constructor:
 
     def _tower(self, base: Volume, podium_m: float, rng: np.random.Generator) -> tuple[Volume, ...]:
         """Split a footprint into a podium of two storeys and a slimmer shaft."""
-        storeys = round(rng.uniform(*self.knobs.tower_storeys))
+        storeys = round(rng.uniform(*self.shop.knobs.tower_storeys))
         footprint = outline_of(base.rings)
         core = footprint.buffer(-rng.uniform(2.5, 4.5), join_style="mitre")
         if core.geom_type != "Polygon" or core.area < 150.0 or rng.uniform() < 0.2:
@@ -128,9 +105,9 @@ class Constructor:
         return podium, shaft
 
     def _stand(self, rings: tuple[np.ndarray, ...]) -> tuple[float, float]:
-        """Floor height just above the highest ground at the walls, and the depth of the foundation below it."""
+        """Floor height just above the highest ground at the walls, and the depth of the foundation."""
         outline = shapely.segmentize(shapely.Polygon(rings[0]).exterior, 4.0)
-        ground = self.relief(shapely.get_coordinates(outline))
+        ground = self.shop.relief(shapely.get_coordinates(outline))
         floor = float(ground.max()) + _KERB_AND_STEP_M
         return floor, floor - float(ground.min()) + _BELOW_GROUND_M
 

@@ -47,8 +47,9 @@ def _volume_courses(index: int, building: Building, volume: Volume) -> list[Cour
     if not (style.shops and grounded and volume.storeys > 1):
         return [
             Course(
-                index, volume.rings, volume.floor_m, volume.foundation_m, top, volume.storeys, style.first_storey_m,
-                style.pitch_m, style.window_share, style.first_sill_m, style.first_head_m, style.wall, grounded,
+                index, volume.rings, volume.floor_m, volume.foundation_m, top, volume.storeys,
+                style.first_storey_m, style.pitch_m, style.window_share, style.first_sill_m,
+                style.first_head_m, style.wall, grounded,
             )
         ]  # fmt: skip
     first_floor = volume.floor_m + style.first_storey_m
@@ -130,10 +131,10 @@ def _walls(
     styles = [buildings[c.building].style for c in courses]
 
     def column(values: list[float]) -> np.ndarray:
-        return np.array(values, np.float64)[index]
+        return np.asarray(np.array(values, np.float64)[index])
 
     def labels(values: list[int]) -> np.ndarray:
-        return np.array(values, np.int64)[index]
+        return np.asarray(np.array(values, np.int64)[index])
 
     length = np.linalg.norm(end - start, axis=1)
     return Walls(

@@ -7,15 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from scenegen.geometry.builder import GeometryBuilder
-from scenegen.geometry.relief import WaveRelief
 from scenegen.maps.city.buildings import Building
 from scenegen.maps.city.construction import Constructor
-from scenegen.maps.city.knobs import CityKnobs
 from scenegen.maps.city.lots import Lot, divide_lots, perimeter_sectors, row_lots
 from scenegen.maps.city.streets import StreetPlan
 from scenegen.maps.city.uses import LOT_AREA_M2, Use, assign_uses
-from scenegen.materials.palette import PaletteBuilder
+from scenegen.maps.city.workshop import Workshop
 
 _CAR_PARK_SHARE = {Use.ESTATE: 0.6, Use.OFFICES: 0.6, Use.INDUSTRY: 1.0}
 
@@ -55,16 +52,13 @@ class Layout:
 
 def lay_out(
     plan: StreetPlan,
-    knobs: CityKnobs,
-    relief: WaveRelief,
-    palette: PaletteBuilder,
-    builder: GeometryBuilder,
+    shop: Workshop,
     rng: np.random.Generator,
 ) -> Layout:
     """Give each block a use and put buildings on it."""
-    uses = assign_uses(plan, knobs, rng)
-    density = rng.uniform(*knobs.building_density)
-    constructor = Constructor.draw(knobs, relief, palette, builder, rng)
+    uses = assign_uses(plan, shop.knobs, rng)
+    density = rng.uniform(*shop.knobs.building_density)
+    constructor = Constructor.draw(shop, rng)
     blocks: list[Block] = []
     buildings: list[Building] = []
     for outline, use in zip(plan.blocks, uses, strict=True):

@@ -6,15 +6,13 @@ import numpy as np
 import shapely
 
 from scenegen.classes import Semantic
-from scenegen.geometry.builder import GeometryBuilder
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along
-from scenegen.geometry.relief import WaveRelief
 from scenegen.geometry.template import Template, place
 from scenegen.maps.city.park import ParkPlan
 from scenegen.maps.city.streets import Rank, StreetPlan
-from scenegen.materials.palette import PaletteBuilder
+from scenegen.maps.city.workshop import Workshop
 
 _KERB_M = 0.12
 _FROM_KERB_M = 0.6
@@ -62,14 +60,12 @@ def _bench() -> Template:
 def build_furniture(
     plan: StreetPlan,
     parks: dict[int, ParkPlan],
-    relief: WaveRelief,
-    palette: PaletteBuilder,
-    builder: GeometryBuilder,
+    shop: Workshop,
     rng: np.random.Generator,
 ) -> tuple[list[Part], np.ndarray]:
     """All street furniture and the places of the posts (for trees to keep clear of)."""
-    metal, glass = palette.pick("metal_galv_weathered", rng), palette.pick("window_glass", rng)
-    wood = palette.pick("wood_siding", rng)
+    metal, glass = shop.palette.pick("metal_galv_weathered", rng), shop.palette.pick("window_glass", rng)
+    wood = shop.palette.pick("wood_siding", rng)
     lamps, lights, signs = _posts(plan, rng)
     benches = np.concatenate([np.zeros((0, 3)), *(p.benches for p in parks.values())])
     parts = []
@@ -80,16 +76,18 @@ def build_furniture(
         (_bench(), benches, wood),
     ):
         count = len(rows)
-        position = np.column_stack([rows[:, :2], relief(rows[:, :2]) + _KERB_M])
+        position = np.column_stack([rows[:, :2], shop.relief(rows[:, :2]) + _KERB_M])
         skins = np.tile([[metal, second]], (count, 1))
-        owner = builder.new_objects(count) + np.arange(count)
+        owner = shop.builder.new_objects(count) + np.arange(count)
         parts.append(place(template, position, rows[:, 2], np.ones((count, 3)), skins, owner))
     return parts, np.concatenate([lamps[:, :2], lights[:, :2], signs[:, :2]])
 
 
 def _posts(plan: StreetPlan, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Places and headings (x, y, rad) of lamps along links, lights at the ends of arterials, signs at others."""
-    lamps, lights, signs = [], [], []
+    """Places and headings (x, y, rad) of lamps along links, of lights and signs at their ends."""
+    lamps: list[list[float] | None] = []
+    lights: list[list[float] | None] = []
+    signs: list[list[float] | None] = []
     blocks = shapely.STRtree(np.asarray(plan.blocks, dtype=object))
 
     def post(line: np.ndarray, distance: float, right: float) -> list[float] | None:

@@ -5,17 +5,14 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from scenegen.geometry.builder import GeometryBuilder
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along, clear_of, first_come
-from scenegen.geometry.relief import WaveRelief
 from scenegen.geometry.template import place
 from scenegen.geometry.trees import broadleaf, conifer, shrub
 from scenegen.maps.city.districts import Layout
-from scenegen.maps.city.knobs import CityKnobs
 from scenegen.maps.city.park import ParkPlan
 from scenegen.maps.city.uses import Use
-from scenegen.materials.palette import PaletteBuilder
+from scenegen.maps.city.workshop import Workshop
 
 _KERB_M = 0.12
 _BROADLEAVED, _CONIFERS = 5, 2
@@ -26,10 +23,7 @@ def build_greenery(
     layout: Layout,
     parks: dict[int, ParkPlan],
     posts: np.ndarray,
-    knobs: CityKnobs,
-    relief: WaveRelief,
-    palette: PaletteBuilder,
-    builder: GeometryBuilder,
+    shop: Workshop,
     rng: np.random.Generator,
 ) -> tuple[list[Part], int]:
     """Trees and shrubs as parts (one per template), and the number of trees.
@@ -40,19 +34,20 @@ def build_greenery(
         What the plan holds; parks by block index.
     posts : float64 (posts, 2)
         Lamps and signs that crowns keep clear of.
-    knobs, relief, palette, builder
-        Of this world.
+    shop : Workshop
     rng : numpy.random.Generator
     """
-    xy, height = _tree_spots(layout, parks, knobs, rng)
+    xy, height = _tree_spots(layout, parks, shop, rng)
     keep = _free(xy, _CROWN_RADIUS * height, layout, posts)
     xy, height = xy[keep], height[keep]
-    parts = _trees(xy, height, relief, palette, builder, rng)
+    parts = _trees(xy, height, shop, rng)
     hedges = _hedge_spots(layout, parks, rng)
     hedges = hedges[clear_of(shapely.buffer(shapely.points(hedges[:, :2]), 0.5), _paving(layout), 0.3)]
-    skins = np.array([[palette.pick("tree_crown", rng)] for _ in range(len(hedges))], np.int64).reshape(-1, 1)
-    position = np.column_stack([hedges[:, :2], relief(hedges[:, :2]) + _KERB_M - 0.03])
-    owner = builder.new_objects(len(hedges)) + np.arange(len(hedges))
+    skins = np.array([[shop.palette.pick("tree_crown", rng)] for _ in range(len(hedges))], np.int64).reshape(
+        -1, 1
+    )
+    position = np.column_stack([hedges[:, :2], shop.relief(hedges[:, :2]) + _KERB_M - 0.03])
+    owner = shop.builder.new_objects(len(hedges)) + np.arange(len(hedges))
     parts.append(place(shrub(rng), position, hedges[:, 2], hedges[:, 3:6], skins, owner))
     return parts, len(xy)
 
@@ -60,21 +55,19 @@ def build_greenery(
 def _trees(
     xy: np.ndarray,
     height: np.ndarray,
-    relief: WaveRelief,
-    palette: PaletteBuilder,
-    builder: GeometryBuilder,
+    shop: Workshop,
     rng: np.random.Generator,
 ) -> list[Part]:
     count = len(xy)
-    owner = builder.new_objects(count) + np.arange(count)
+    owner = shop.builder.new_objects(count) + np.arange(count)
     broad = rng.uniform(size=count) < 0.82
     species = np.where(
         broad, rng.integers(0, _BROADLEAVED, count), _BROADLEAVED + rng.integers(0, _CONIFERS, count)
     )
-    bark = np.array([palette.pick("bark_trunk", rng) for _ in range(count)], np.int64)
-    leaves = np.array([palette.pick("tree_crown", rng) for _ in range(count)], np.int64)
+    bark = np.array([shop.palette.pick("bark_trunk", rng) for _ in range(count)], np.int64)
+    leaves = np.array([shop.palette.pick("tree_crown", rng) for _ in range(count)], np.int64)
     skins = np.column_stack([bark, leaves])
-    position = np.column_stack([xy, relief(xy) + _KERB_M])
+    position = np.column_stack([xy, shop.relief(xy) + _KERB_M])
     heading, wide = rng.uniform(0.0, 2 * np.pi, count), rng.uniform(0.8, 1.1, count)
     scale = height[:, None] * np.column_stack([wide, wide, np.ones(count)])
     parts = []
@@ -101,21 +94,21 @@ def _free(xy: np.ndarray, radius: np.ndarray, layout: Layout, posts: np.ndarray)
     smaller = shapely.buffer(shapely.points(xy), 0.8 * radius, quad_segs=4)
     index = np.flatnonzero(keep)
     keep[index] = first_come(smaller[index])
-    return keep
+    return np.asarray(keep)
 
 
 def _tree_spots(
-    layout: Layout, parks: dict[int, ParkPlan], knobs: CityKnobs, rng: np.random.Generator
+    layout: Layout, parks: dict[int, ParkPlan], shop: Workshop, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray]:
     """Candidate places and heights."""
-    yard_rate = rng.uniform(*knobs.yard_trees_per_1000_m2)
-    park_rate = rng.uniform(*knobs.park_trees_per_1000_m2)
+    yard_rate = rng.uniform(*shop.knobs.yard_trees_per_1000_m2)
+    park_rate = rng.uniform(*shop.knobs.park_trees_per_1000_m2)
     places, heights = [], []
     for k, block in enumerate(layout.blocks):
         if rng.uniform() < 0.75 and block.use is not Use.INDUSTRY:
             line = shapely.get_coordinates(block.outline.buffer(-1.0, join_style="mitre").exterior)
             spots = np.arange(
-                6.0, shapely.LineString(line).length - 3.0, rng.uniform(*knobs.street_tree_spacing_m)
+                6.0, shapely.LineString(line).length - 3.0, rng.uniform(*shop.knobs.street_tree_spacing_m)
             )
             places.append(along(line, spots, np.zeros(len(spots)))[0])
             heights.append(rng.uniform(5.0, 8.0) * rng.uniform(0.85, 1.15, len(spots)))

@@ -50,7 +50,7 @@ class CityKnobs(Section):
     """Storeys of towers, podium included."""
 
     modern_share: Share = (0.2, 0.6)
-    """Share of the middle of the city built after 1960: office blocks and towers instead of perimeter blocks."""
+    """Share of the middle built after 1960: office blocks and towers instead of perimeter blocks."""
 
     industry_share: Share = (0.05, 0.18)
     """Share of blocks given to sheds and workshops."""

@@ -1,8 +1,9 @@
-"""Blocks become lots: divided across their longer side until lots have a building's size, and seen from their street."""
+"""Blocks become lots, each seen from its street; or, cut along party walls, perimeter buildings."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -38,7 +39,7 @@ class Lot:
     def world(self, xy: Float64[np.ndarray, "points 2"]) -> Float64[np.ndarray, "points 2"]:
         """Points of the lot's frame in the plan."""
         c, s = np.cos(self.heading_rad), np.sin(self.heading_rad)
-        return xy @ np.array([[c, s], [-s, c]]) + self.corner
+        return np.asarray(xy @ np.array([[c, s], [-s, c]]) + self.corner)
 
 
 def divide_lots(
@@ -145,7 +146,7 @@ def perimeter_sectors(
     rim = shapely.Polygon(yard.exterior, [court.exterior])
     front = shapely.get_coordinates(court.exterior)
     cuts = []
-    for a, b in zip(front[:-1], front[1:], strict=True):
+    for a, b in pairwise(front):
         side, length = (b - a), float(np.linalg.norm(b - a))
         count = int(length // rng.uniform(*frontage_m))
         if length < 9.0:

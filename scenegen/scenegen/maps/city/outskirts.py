@@ -1,4 +1,4 @@
-"""Beyond the detailed city: fields, roads that lead out, simple buildings and tree masses up to the horizon."""
+"""Beyond the detailed city: fields, roads that lead out, plain buildings and groves up to the horizon."""
 
 from __future__ import annotations
 
@@ -8,16 +8,14 @@ import numpy as np
 import shapely
 
 from scenegen.classes import Semantic
-from scenegen.geometry.builder import GeometryBuilder
 from scenegen.geometry.ground import Region
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import clear_of, first_come, rectangles
-from scenegen.geometry.relief import WaveRelief
 from scenegen.geometry.template import place
 from scenegen.geometry.trees import grove
 from scenegen.maps.city.streets import StreetPlan
-from scenegen.materials.palette import PaletteBuilder
+from scenegen.maps.city.workshop import Workshop
 
 FAR_M = 2600.0
 _ROAD_HALF_M = 5.0
@@ -35,13 +33,11 @@ def road_lines(plan: StreetPlan) -> np.ndarray:
     return np.array(lines, dtype=object)
 
 
-def far_regions(
-    plan: StreetPlan, palette: PaletteBuilder, builder: GeometryBuilder, rng: np.random.Generator
-) -> list[Region]:
+def far_regions(plan: StreetPlan, shop: Workshop, rng: np.random.Generator) -> list[Region]:
     """Land around the city; the first region covers everything."""
-    land, fields, road = builder.new_objects(), builder.new_objects(), builder.new_objects()
+    land, fields, road = shop.builder.new_objects(), shop.builder.new_objects(), shop.builder.new_objects()
     edge = shapely.box(-FAR_M, -FAR_M, FAR_M, FAR_M)
-    regions = [Region(edge, palette.pick("grass_dry", rng), int(Semantic.GRASS), land)]
+    regions = [Region(edge, shop.palette.pick("grass_dry", rng), int(Semantic.GRASS), land)]
     half = np.abs(plan.outline.bounds).max()
     count = 60
     angle, reach = rng.uniform(0, 2 * np.pi, count), half + 1800.0 * rng.uniform(0.02, 1.0, count)
@@ -54,8 +50,8 @@ def far_regions(
     for shape, k in zip(shapes[keep], rng.integers(0, len(_COVERS), keep.sum()), strict=True):
         name = _COVERS[int(k)]
         semantic = Semantic.SOIL if name.startswith("soil") else Semantic.GRASS
-        regions.append(Region(shape, palette.pick(name, rng), int(semantic), fields))
-    asphalt = palette.pick("asphalt_aged", rng)
+        regions.append(Region(shape, shop.palette.pick(name, rng), int(semantic), fields))
+    asphalt = shop.palette.pick("asphalt_aged", rng)
     inside = edge.buffer(-20.0)
     for shape in roads:
         for piece in shapely.get_parts(shapely.intersection(shape, inside)):
@@ -65,14 +61,12 @@ def far_regions(
 
 def far_objects(
     plan: StreetPlan,
-    relief: WaveRelief,
-    palette: PaletteBuilder,
-    builder: GeometryBuilder,
+    shop: Workshop,
     rng: np.random.Generator,
 ) -> list[Part]:
     """Plain buildings and groves, denser towards the city; they thin out with distance."""
     half = float(np.abs(plan.outline.bounds).max())
-    count = 1500
+    count = 1200
     angle = rng.uniform(0.0, 2 * np.pi, count)
     reach = half * 0.85 + 1900.0 * rng.uniform(0.0, 1.0, count) ** 1.7
     centre = np.column_stack([np.cos(angle), np.sin(angle)]) * reach[:, None]
@@ -92,10 +86,8 @@ def far_objects(
         [length, width, np.where(rng.uniform(size=count) < 0.08, 28.0, rng.uniform(5.0, 15.0, count))]
     )
     return [
-        _plain_buildings(
-            centre[keep & built], size[keep & built], heading[keep & built], relief, palette, builder, rng
-        ),
-        _groves(centre[keep & ~built], size[keep & ~built], relief, palette, builder, rng),
+        _plain_buildings(centre[keep & built], size[keep & built], heading[keep & built], shop, rng),
+        _groves(centre[keep & ~built], size[keep & ~built], shop, rng),
     ]
 
 
@@ -103,16 +95,14 @@ def _plain_buildings(
     centre: np.ndarray,
     size: np.ndarray,
     heading: np.ndarray,
-    relief: WaveRelief,
-    palette: PaletteBuilder,
-    builder: GeometryBuilder,
+    shop: Workshop,
     rng: np.random.Generator,
 ) -> Part:
     names = ("stucco_render", "brick_red", "concrete_wall", "concrete_wall")
-    wall = np.array([palette.pick(names[int(k)], rng) for k in rng.integers(0, 4, len(centre))])
+    wall = np.array([shop.palette.pick(names[int(k)], rng) for k in rng.integers(0, 4, len(centre))])
     roofs = np.array(
         [
-            palette.pick(("clay_roof_tile", "bitumen_felt_roof")[int(k)], rng)
+            shop.palette.pick(("clay_roof_tile", "bitumen_felt_roof")[int(k)], rng)
             for k in rng.integers(0, 2, len(centre))
         ]
     )
@@ -125,8 +115,8 @@ def _plain_buildings(
         slot=np.where(roof, 1, 0),
         semantic=np.where(roof, int(Semantic.ROOF), int(Semantic.WALL)),
     )
-    base = np.column_stack([centre, relief(centre) - 1.5])
-    owner = builder.new_objects(len(centre)) + np.arange(len(centre))
+    base = np.column_stack([centre, shop.relief(centre) - 1.5])
+    owner = shop.builder.new_objects(len(centre)) + np.arange(len(centre))
     scale = size + np.array([0, 0, 1.5])
     return place(template, base, heading, scale, np.column_stack([wall, roofs]), owner)
 
@@ -134,14 +124,14 @@ def _plain_buildings(
 def _groves(
     centre: np.ndarray,
     size: np.ndarray,
-    relief: WaveRelief,
-    palette: PaletteBuilder,
-    builder: GeometryBuilder,
+    shop: Workshop,
     rng: np.random.Generator,
 ) -> Part:
-    skin = np.array([[palette.pick("tree_crown", rng)] for _ in range(len(centre))], np.int64).reshape(-1, 1)
-    position = np.column_stack([centre, relief(centre)])
+    skin = np.array([[shop.palette.pick("tree_crown", rng)] for _ in range(len(centre))], np.int64).reshape(
+        -1, 1
+    )
+    position = np.column_stack([centre, shop.relief(centre)])
     scale = np.column_stack([size[:, 0], size[:, 0], rng.uniform(7.0, 13.0, len(centre))])
-    first = builder.new_objects(len(centre))
+    first = shop.builder.new_objects(len(centre))
     heading = rng.uniform(0.0, 2 * np.pi, len(centre))
     return place(grove(rng), position, heading, scale, skin, first + np.arange(len(centre)))

@@ -8,10 +8,8 @@ import numpy as np
 import shapely
 
 from scenegen.classes import Semantic
-from scenegen.geometry.builder import GeometryBuilder
 from scenegen.geometry.ground import Region
-from scenegen.geometry.relief import WaveRelief
-from scenegen.materials.palette import PaletteBuilder
+from scenegen.maps.city.workshop import Workshop
 
 _KERB_M = 0.12
 _PATH_HALF_M = 1.3
@@ -82,7 +80,7 @@ def _winding(
     t = np.linspace(0.0, 2.6 * reach, 24)
     sway = rng.uniform(0.05, 0.12) * reach * np.sin(t / reach * rng.uniform(1.2, 2.2))
     along, across = np.array([np.cos(angle), np.sin(angle)]), np.array([-np.sin(angle), np.cos(angle)])
-    return hub + t[:, None] * along + sway[:, None] * across
+    return np.asarray(hub + t[:, None] * along + sway[:, None] * across)
 
 
 def _blob(centre: np.ndarray, radius: float, rng: np.random.Generator) -> shapely.Polygon:
@@ -140,20 +138,20 @@ def _benches(lines: list[np.ndarray], yard: shapely.Polygon, rng: np.random.Gene
 
 def park_regions(
     park: ParkPlan,
-    relief: WaveRelief,
-    palette: PaletteBuilder,
-    builder: GeometryBuilder,
+    shop: Workshop,
     rng: np.random.Generator,
 ) -> list[Region]:
     """Ground of a park on top of its lawn."""
-    walk, planted, water = builder.new_objects(), builder.new_objects(), builder.new_objects()
-    gravel = palette.pick("concrete_pavement" if rng.uniform() < 0.5 else "soil_dry", rng)
+    walk, planted, water = shop.builder.new_objects(), shop.builder.new_objects(), shop.builder.new_objects()
+    gravel = shop.palette.pick("concrete_pavement" if rng.uniform() < 0.5 else "soil_dry", rng)
     semantic = int(Semantic.SIDEWALK)
     regions = [Region(p, gravel, semantic, walk, _KERB_M) for p in park.paths]
-    soil = palette.pick("soil_wet", rng)
+    soil = shop.palette.pick("soil_wet", rng)
     regions += [Region(b, soil, int(Semantic.SOIL), planted, _KERB_M) for b in park.beds]
     if park.pond is not None and not park.pond.is_empty and park.pond.geom_type == "Polygon":
-        level = float(relief(shapely.get_coordinates(park.pond.exterior)).min()) + _KERB_M - _BANK_M
-        skin = palette.special("water_fresh_or_sea", "pond", prescribed_K=float(rng.uniform(283.0, 293.0)))
+        level = float(shop.relief(shapely.get_coordinates(park.pond.exterior)).min()) + _KERB_M - _BANK_M
+        skin = shop.palette.special(
+            "water_fresh_or_sea", "pond", prescribed_K=float(rng.uniform(283.0, 293.0))
+        )
         regions.append(Region(park.pond, skin, int(Semantic.WATER), water, level, absolute=True))
     return regions

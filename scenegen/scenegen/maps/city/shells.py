@@ -1,8 +1,9 @@
-"""Building plans become geometry: walls, string courses, parapets, roofs; all buildings of a world at once."""
+"""Building plans become geometry: walls, balconies, string courses, parapets, roofs."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from scenegen.maps.city.styles import Roof
 
 _BLANK_SPACING_M = 4.0
 _BAND_M = 0.14
+_FIRST_SITE_M = 0.15
 
 
 def build_shells(buildings: Sequence[Building], roof_plans: np.ndarray, rng: np.random.Generator) -> Part:
@@ -34,6 +36,7 @@ def build_shells(buildings: Sequence[Building], roof_plans: np.ndarray, rng: np.
     table = wall_table(buildings, rng)
     wall = np.full(len(table.blank), int(Semantic.WALL))
     blank = patches(table.blank, _BLANK_SPACING_M, table.blank_surface, wall, table.blank_object)
+    blank = _sites_above_ground(blank, buildings)
     volumes = [(b, v) for b in buildings for v in b.volumes]
     return concatenate(
         [
@@ -45,6 +48,19 @@ def build_shells(buildings: Sequence[Building], roof_plans: np.ndarray, rng: np.
             sloped_roofs(volumes),
         ]
     )
+
+
+def _sites_above_ground(walls: Part, buildings: Sequence[Building]) -> Part:
+    """Lift the sites of the foundation row to just above the floor: below ground they would see nothing."""
+    owner = np.zeros(len(walls.site_position), np.int64)
+    owner[walls.corner_site.ravel()] = np.repeat(walls.object, 3)
+    known = np.array([b.object for b in buildings])
+    floors = np.array([b.volumes[0].floor_m for b in buildings])
+    order = np.argsort(known)
+    floor = floors[order[np.searchsorted(known, owner, sorter=order)]]
+    position = walls.site_position.copy()
+    position[:, 2] = np.maximum(position[:, 2], floor + _FIRST_SITE_M)
+    return replace(walls, site_position=position)
 
 
 def _trim(volumes: Storeys) -> Part:

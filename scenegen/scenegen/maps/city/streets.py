@@ -1,4 +1,4 @@
-"""The street network: an irregular outline is cut by arterials, divided and divided again, and finally bent."""
+"""The street network: an irregular outline, cut by arterials, divided again and again, and bent."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def _short_way(cell: shapely.Polygon, rng: np.random.Generator) -> tuple[np.ndar
 def _cut(
     cell: shapely.Polygon, point: np.ndarray, angle: float, rank: Rank, cuts: list[tuple[np.ndarray, Rank]]
 ) -> list[shapely.Polygon]:
-    """Split a cell by a line and note the part of the line inside it; the cell itself if a sliver would be left."""
+    """Split a cell by a line and note the part inside; the cell itself if a sliver would be left."""
     step = 3000.0 * np.array([np.cos(angle), np.sin(angle)])
     line = shapely.LineString([point - step, point + step])
     inside = shapely.intersection(line, cell)
@@ -196,7 +196,7 @@ def _links(streets: tuple[Street, ...]) -> list[Link]:
     half = np.array([s.width_m / 2 for s in streets])
     links = []
     for k, line in enumerate(lines):
-        mark = np.arange(0.5, line.length, 1.0)
+        mark = np.arange(0.5, line.length, 1.5)
         points = shapely.line_interpolate_point(line, mark)
         near = shapely.distance(line, lines) < 30.0
         near[k] = False
@@ -205,7 +205,7 @@ def _links(streets: tuple[Street, ...]) -> list[Link]:
         clear = np.concatenate([[False], (gap > _CLEAR_OF_JUNCTION_M).all(axis=1), [False]])
         edges = np.flatnonzero(clear[1:] != clear[:-1])
         for a, b in zip(edges[::2], edges[1::2], strict=True):
-            if b - a > _SHORTEST_LINK_M:
+            if mark[b - 1] - mark[a] > _SHORTEST_LINK_M:
                 links.append(Link(k, float(mark[a]), float(mark[b - 1])))
     return links
 

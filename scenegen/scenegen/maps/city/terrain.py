@@ -6,23 +6,20 @@ import numpy as np
 import shapely
 
 from scenegen.classes import Semantic
-from scenegen.geometry.builder import GeometryBuilder
 from scenegen.geometry.ground import Region, drape
 from scenegen.geometry.part import Part
 from scenegen.geometry.planar import triangulate
-from scenegen.geometry.relief import WaveRelief
 from scenegen.geometry.scatter import contact_points, graded_points
 from scenegen.maps.city.districts import Block, Layout
-from scenegen.maps.city.knobs import CityKnobs
 from scenegen.maps.city.markings import marking_quads
 from scenegen.maps.city.outskirts import FAR_M, far_regions
 from scenegen.maps.city.park import ParkPlan, park_regions
 from scenegen.maps.city.streets import StreetPlan
 from scenegen.maps.city.uses import Use
-from scenegen.materials.palette import PaletteBuilder
+from scenegen.maps.city.workshop import Workshop
 
 KERB_M = 0.12
-_GROUND_POINTS = 58_000
+_GROUND_POINTS, _POINTS_PER_BUILDING = 81_000, 70
 _CONTACT_SPACING_M = 1.2
 _TUCK_M = 0.01
 
@@ -31,10 +28,7 @@ def build_terrain(
     plan: StreetPlan,
     layout: Layout,
     parks: dict[int, ParkPlan],
-    knobs: CityKnobs,
-    relief: WaveRelief,
-    palette: PaletteBuilder,
-    builder: GeometryBuilder,
+    shop: Workshop,
     rng: np.random.Generator,
 ) -> Part:
     """All ground, from the middle of the city to the far edge.
@@ -43,22 +37,21 @@ def build_terrain(
     ----------
     plan, layout, parks
         What was drawn so far; parks by block index.
-    knobs, relief, palette, builder
-        Of this world.
+    shop : Workshop
     rng : numpy.random.Generator
     """
-    dry_share = rng.uniform(*knobs.dry_lawn_share)
-    regions = far_regions(plan, palette, builder, rng)
-    regions += _streets(plan, palette, builder, rng)
+    dry_share = rng.uniform(*shop.knobs.dry_lawn_share)
+    regions = far_regions(plan, shop, rng)
+    regions += _streets(plan, shop, rng)
     for k, block in enumerate(layout.blocks):
-        regions += _block_regions(block, dry_share, palette, builder, rng)
+        regions += _block_regions(block, dry_share, shop, rng)
         if k in parks:
-            regions += park_regions(parks[k], relief, palette, builder, rng)
-    regions += _paths(layout, palette, builder, rng)
+            regions += park_regions(parks[k], shop, rng)
+    regions += _paths(layout, shop, rng)
     holes = shapely.union_all([b.footprint for b in layout.buildings]).buffer(-_TUCK_M, join_style="mitre")
     solid = list(getattr(holes, "geoms", [holes]))
     regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in solid]
-    spacing = _ground_spacing(plan, holes)
+    spacing = _ground_spacing(plan.outline.area - holes.area, len(layout.buildings))
     half = float(np.abs(plan.outline.bounds).max())
     points = np.concatenate(
         [
@@ -68,33 +61,30 @@ def build_terrain(
     )
     outlines = [r.outline for r in regions]
     along = np.array([_CONTACT_SPACING_M if r.hole else 1.05 * spacing for r in regions])
-    return drape(triangulate(outlines, points, along, (half * 1.03, 0.11)), regions, relief)
+    return drape(triangulate(outlines, points, along, (half * 1.03, 0.11)), regions, shop.relief)
 
 
-def _ground_spacing(plan: StreetPlan, holes: shapely.Geometry) -> float:
-    """Lattice spacing [m] at which open ground takes about `_GROUND_POINTS` points (a hexagonal lattice: 2/sqrt(3)/s^2)."""
-    return float(np.sqrt(2 / np.sqrt(3) * (plan.outline.area - holes.area) / _GROUND_POINTS))
+def _ground_spacing(open_m2: float, buildings: int) -> float:
+    """Spacing of the lattice [m] (2/sqrt(3)/s^2 points per m^2): what buildings leave of the budget."""
+    points = max(_GROUND_POINTS - _POINTS_PER_BUILDING * buildings, 40_000)
+    return float(np.sqrt(2 / np.sqrt(3) * open_m2 / points))
 
 
-def _streets(
-    plan: StreetPlan, palette: PaletteBuilder, builder: GeometryBuilder, rng: np.random.Generator
-) -> list[Region]:
-    road = builder.new_objects()
-    paint = palette.special("asphalt_aged", "paint", solar_absorptance=0.55)
-    marking = builder.new_objects()
-    regions = [Region(plan.outline, palette.pick("asphalt_aged", rng), int(Semantic.ROAD), road)]
+def _streets(plan: StreetPlan, shop: Workshop, rng: np.random.Generator) -> list[Region]:
+    road = shop.builder.new_objects()
+    paint = shop.palette.special("asphalt_aged", "paint", solar_absorptance=0.55)
+    marking = shop.builder.new_objects()
+    regions = [Region(plan.outline, shop.palette.pick("asphalt_aged", rng), int(Semantic.ROAD), road)]
     quads = shapely.polygons(marking_quads(plan, rng))
     return regions + [Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True) for q in quads]
 
 
-def _block_regions(
-    block: Block, dry_share: float, palette: PaletteBuilder, builder: GeometryBuilder, rng: np.random.Generator
-) -> list[Region]:
-    pavement = palette.pick("concrete_pavement", rng)
-    regions = [Region(block.outline, pavement, int(Semantic.SIDEWALK), builder.new_objects(), KERB_M)]
-    lawn = palette.pick("grass_dry" if rng.uniform() < dry_share else "grass_watered", rng)
-    asphalt = palette.pick("asphalt_aged", rng)
-    ground, ground_of_cars = builder.new_objects(), builder.new_objects()
+def _block_regions(block: Block, dry_share: float, shop: Workshop, rng: np.random.Generator) -> list[Region]:
+    pavement = shop.palette.pick("concrete_pavement", rng)
+    regions = [Region(block.outline, pavement, int(Semantic.SIDEWALK), shop.builder.new_objects(), KERB_M)]
+    lawn = shop.palette.pick("grass_dry" if rng.uniform() < dry_share else "grass_watered", rng)
+    asphalt = shop.palette.pick("asphalt_aged", rng)
+    ground, ground_of_cars = shop.builder.new_objects(), shop.builder.new_objects()
     surface, semantic = {
         Use.INDUSTRY: (asphalt, Semantic.ROAD),
         Use.OFFICES: (pavement, Semantic.SIDEWALK),
@@ -106,7 +96,7 @@ def _block_regions(
     if block.use is Use.PERIMETER:
         court = block.yard.buffer(-17.0, join_style="mitre")
         if court.geom_type == "Polygon" and court.area > 120.0:
-            regions.append(Region(court, lawn, int(Semantic.GRASS), builder.new_objects(), KERB_M))
+            regions.append(Region(court, lawn, int(Semantic.GRASS), shop.builder.new_objects(), KERB_M))
     for lot in block.car_parks:
         bays = lot.area.buffer(-1.0, join_style="mitre")
         if bays.geom_type == "Polygon" and block.use is not Use.INDUSTRY:
@@ -118,17 +108,15 @@ def _block_regions(
             green = lot.area.buffer(-3.5, join_style="mitre").buffer(1.5)
             if green.geom_type == "Polygon" and green.area > 60.0 and rng.uniform() < 0.6:
                 regions.append(
-                    Region(green.simplify(0.3), lawn, int(Semantic.GRASS), builder.new_objects(), KERB_M)
+                    Region(green.simplify(0.3), lawn, int(Semantic.GRASS), shop.builder.new_objects(), KERB_M)
                 )
     return regions
 
 
-def _paths(
-    layout: Layout, palette: PaletteBuilder, builder: GeometryBuilder, rng: np.random.Generator
-) -> list[Region]:
+def _paths(layout: Layout, shop: Workshop, rng: np.random.Generator) -> list[Region]:
     """Paved paths from the sidewalk to the doors of detached buildings on lawns."""
-    pavement = palette.pick("concrete_pavement", rng)
-    first = builder.new_objects()
+    pavement = shop.palette.pick("concrete_pavement", rng)
+    first = shop.builder.new_objects()
     regions = []
     for building in layout.buildings:
         if building.front is None:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
-from scenegen.geometry.builder import GeometryBuilder
 from scenegen.geometry.cars import BODIES, LENGTH_M, WIDTH_M, car
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along, clear_of, first_come, rectangles
@@ -15,7 +14,7 @@ from scenegen.maps.city.districts import Layout
 from scenegen.maps.city.knobs import CityKnobs
 from scenegen.maps.city.lots import Lot
 from scenegen.maps.city.streets import Rank, StreetPlan
-from scenegen.materials.palette import PaletteBuilder
+from scenegen.maps.city.workshop import Workshop
 
 _PAINTS = ("car_paint_black", "car_paint_white", "car_paint_silver", "car_paint_silver")
 _KERB_M = 0.12
@@ -29,22 +28,19 @@ _DRIVING = {Rank.ARTERIAL: (1.75, 5.3), Rank.COLLECTOR: (1.75,), Rank.SIDE: (1.3
 def build_traffic(
     plan: StreetPlan,
     layout: Layout,
-    knobs: CityKnobs,
-    relief: WaveRelief,
-    palette: PaletteBuilder,
-    builder: GeometryBuilder,
+    shop: Workshop,
     rng: np.random.Generator,
 ) -> tuple[list[Part], int]:
     """Cars as parts, one per body style, and their number."""
-    spots, lift = _spots(plan, layout, knobs, rng)
+    spots, lift = _spots(plan, layout, shop.knobs, rng)
     count = len(spots)
-    first = builder.new_objects(count)
+    first = shop.builder.new_objects(count)
     body = rng.choice(len(BODIES), count, p=[0.36, 0.2, 0.32, 0.12])
-    paint = np.array([palette.pick(_PAINTS[int(k)], rng) for k in rng.integers(0, 4, count)])
-    glass, rubber = palette.pick("window_glass", rng), palette.only("tyre_rubber")
+    paint = np.array([shop.palette.pick(_PAINTS[int(k)], rng) for k in rng.integers(0, 4, count)])
+    glass, rubber = shop.palette.pick("window_glass", rng), shop.palette.only("tyre_rubber")
     skins = np.column_stack([paint, np.full(count, glass), np.full(count, rubber)])
-    slope = slopes(relief, spots[:, :2])
-    position = np.column_stack([spots[:, :2], relief(spots[:, :2]) + lift])
+    slope = slopes(shop.relief, spots[:, :2])
+    position = np.column_stack([spots[:, :2], shop.relief(spots[:, :2]) + lift])
     size = rng.uniform(0.95, 1.05, count)
     parts = []
     for k, name in enumerate(BODIES):
