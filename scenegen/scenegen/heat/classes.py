@@ -10,12 +10,12 @@ from jaxtyping import Float32, Float64, Int64
 from scenegen.materials.material import Build
 from scenegen.world import World
 
-WALL_AZIMUTHS = 16
+WALL_AZIMUTHS = 8
 SLOPE_AZIMUTHS = 8
 UP, DOWN, FIRST_SLOPE = 0, 1, 2
 FIRST_WALL = FIRST_SLOPE + 2 * SLOPE_AZIMUTHS
 ORIENTATIONS = FIRST_WALL + WALL_AZIMUTHS
-"""Up, down, two steepnesses of roofs in eight directions, walls in sixteen."""
+"""Up, down, two steepnesses of roofs and walls, each in eight directions."""
 
 _FLAT_COS, _STEEP_COS, _WALL_COS, _DOWN_COS = 0.978, 0.82, 0.26, -0.5
 """Normals within 12, 35, 75 and beyond 120 degrees of vertical."""
