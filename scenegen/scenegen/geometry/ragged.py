@@ -27,4 +27,4 @@ def ragged_grid(
 
 def offsets(counts: Int64[np.ndarray, "items"]) -> Int64[np.ndarray, "items"]:
     """Start of each item in the flat array."""
-    return np.concatenate([[0], np.cumsum(counts)[:-1]]).astype(np.int64)
+    return (np.cumsum(counts) - counts).astype(np.int64)
