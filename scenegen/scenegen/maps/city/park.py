@@ -150,8 +150,6 @@ def park_regions(
     regions += [Region(b, soil, int(Semantic.SOIL), planted, _KERB_M) for b in park.beds]
     if park.pond is not None and not park.pond.is_empty and park.pond.geom_type == "Polygon":
         level = float(shop.relief(shapely.get_coordinates(park.pond.exterior)).min()) + _KERB_M - _BANK_M
-        skin = shop.palette.special(
-            "water_fresh_or_sea", "pond", prescribed_K=float(rng.uniform(283.0, 293.0))
-        )
+        skin = shop.palette.special("water_fresh_or_sea", "pond")  # the heat balance knows the season
         regions.append(Region(park.pond, skin, int(Semantic.WATER), water, level, absolute=True))
     return regions
