@@ -6,6 +6,7 @@ import json
 import re
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -88,3 +89,15 @@ def test_files_and_names(pristine: Path) -> None:
 def test_numpy_opens_the_index(pristine: Path) -> None:
     rows = np.load(pristine / "index.npy", mmap_mode="r")
     assert rows.dtype == ROW and len(rows) == 24
+
+
+def test_the_examples_run(pristine: Path) -> None:
+    examples = re.findall(r"```python\n(.*?)```", TEXT, flags=re.DOTALL)
+    names: dict[str, Any] = {"path": str(pristine)}
+    for example in examples:
+        exec(compile(example, "docs/dataset_format.md", "exec"), names)
+    assert len(examples) == 2
+    assert names["sample"]["key"] == "city-00000-000-0001"
+    np.testing.assert_array_equal(names["thermal"], names["sample"]["thermal"])
+    np.testing.assert_array_equal(names["depth"], names["sample"]["depth"])
+    assert names["clips"][0]["flow"].shape == (2, 12, 16, 2)
