@@ -15,7 +15,8 @@ from scenegen_cli.leaving import TerminatedError
 from scenegen_cli.progress import Meter
 from scenegen_datasets.probe import render_fingerprint
 from scenegen_datasets.run import Job, Outcome, prepare, run
-from scenegen_datasets.verify import VerifyReport, verify
+from scenegen_datasets.store import DATASET
+from scenegen_datasets.verify import Finding, VerifyReport, verify
 
 QUARANTINED = 3
 """Exit code of a job that finished without some of its clips."""
@@ -71,10 +72,21 @@ def make(job: Job, again: Sequence[str], *, check_after: bool, as_json: bool) ->
         say(_words(outcome, report))
         for clip, reason in outcome.quarantined:
             note(f"put aside: {clip}: {reason}")
-    if report is not None and not report.ok:
-        note(f"verify found: {report.findings[0].file}: {report.findings[0].reason}")
+    wrong = _unexpected(outcome, report)
+    if wrong:
+        note(f"verify found: {wrong[0].file}: {wrong[0].reason}")
         return 1
     return QUARANTINED if outcome.quarantined or outcome.info.missing else 0
+
+
+def _unexpected(outcome: Outcome, report: VerifyReport | None) -> list[Finding]:
+    """Findings beyond the clips that are known to be missing."""
+    known = outcome.info.missing
+    return [
+        finding
+        for finding in (report.findings if report is not None else ())
+        if not (finding.file == DATASET and any(clip in finding.reason for clip in known))
+    ]
 
 
 def plan_in_words(job: Job) -> str:
@@ -99,7 +111,10 @@ def pictures(root: Path) -> tuple[Path, Path]:
 def _words(outcome: Outcome, report: VerifyReport | None) -> str:
     info = outcome.info
     splits = ", ".join(f"{count:,} {name}" for name, count in info.splits.items() if count)
-    checked = "" if report is None else ", verified" if report.ok else f", {len(report.findings)} findings"
+    wrong = len(_unexpected(outcome, report))
+    checked = "" if report is None else f", {wrong} findings" if wrong else ", verified"
+    if info.missing:
+        checked += f", without {len(info.missing)} of {info.clips + len(info.missing)} clips"
     return f"{info.name} {info.version}: {info.pairs:,} pairs ({splits}), {size(info.bytes)}{checked}"
 
 

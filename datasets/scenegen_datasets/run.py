@@ -7,6 +7,7 @@ import shutil
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -25,10 +26,17 @@ from scenegen_datasets.recipe import SCENE_SEMANTICS, Recipe
 from scenegen_datasets.run_log import RunLog, machine
 from scenegen_datasets.store import check_output, clean, create_or_open, finished
 
-ONE_THREAD = dict.fromkeys(
-    ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS"), "1"
-)
-"""Environment of a worker: set before its interpreter starts, because these are read once."""
+WORKER_ENVIRONMENT = {
+    **dict.fromkeys(
+        ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS"), "1"
+    ),
+    # glibc raises its threshold for returning blocks to the system each time a large one is freed; a fixed one keeps
+    # memory flat from world to world (measured: left after release 280-302 MiB without, 284-285 MiB with).
+    "MALLOC_MMAP_THRESHOLD_": str(4 << 20),
+    "MALLOC_TRIM_THRESHOLD_": str(16 << 20),
+    "MALLOC_ARENA_MAX": "1",
+}
+"""Of every worker; set before its interpreter starts, because these are read once."""
 
 BYTES_PER_PIXEL, BYTES_PER_FRAME = 17.0, 15_000
 """Size on disk of one frame with the default layers; measured, on the high side."""
@@ -69,7 +77,7 @@ class Job:
     processes: int
     allow_mixed: bool = False
 
-    @property
+    @cached_property
     def clips(self) -> tuple[ClipJob, ...]:
         """The plan, as far as it is to be made."""
         recipe = self.recipe
@@ -190,7 +198,11 @@ def _make(job: Job, missing: Sequence[ClipJob], fingerprint: str, log: RunLog, t
     tasks = [Task(clip.name, f"{clip.map}-{clip.world}", asdict(clip)) for clip in missing]
     count = _Count(missing, len(job.clips))
     with Pool(
-        "scenegen_datasets.studio:worker", setup, job.processes, environment=ONE_THREAD, share_from=SHARE_FROM
+        "scenegen_datasets.studio:worker",
+        setup,
+        job.processes,
+        environment=WORKER_ENVIRONMENT,
+        share_from=SHARE_FROM,
     ) as pool:
         for event in pool.run(tasks):
             what = count.hear(event)

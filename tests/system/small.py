@@ -1,4 +1,4 @@
-"""A job small enough for tests: a quarter of a city, tiny pictures, four short flights."""
+"""A job small enough for tests: a small city, tiny pictures, four short flights."""
 
 import hashlib
 import os
@@ -11,9 +11,9 @@ FLAGS = [
     *("--size", "64x64"),
     *("--clips-per-world", "4"),
     *("--pairs-per-clip", "4"),
-    *("--city.extent-m", "250"),
+    *("--city.extent-m", "400"),
     *("--exposure.directions", "32"),
-    *("--exposure.sun-step-min", "60"),
+    *("--exposure.sun-step-min", "120"),
 ]
 PAIRS = 16
 

@@ -53,9 +53,9 @@ def test_killed_at_random_moments_it_resumes_to_the_same_bytes(
 ) -> None:
     root = tmp_path / "tiny"
     rng = np.random.default_rng(20)
-    for victim in ("group", "worker", "group", "coordinator"):
+    for victim in ("group", "worker", "coordinator"):
         job = small.start([*small.render(root), "--no-verify"])
-        time.sleep(rng.uniform(2.0, 7.0))
+        time.sleep(rng.uniform(2.0, 8.0))
         workers = small.children(job.pid)
         if victim == "worker" and workers:
             os.kill(workers[-1], signal.SIGKILL)  # the job must get over it by itself
@@ -110,6 +110,22 @@ def test_a_finished_job_run_again_changes_nothing(
     report = json.loads(capsys.readouterr().out)
     assert (report["made"], report["verified"], report["quarantined"]) == (0, True, {})
     assert small.tree(finished_dataset) == before
+
+
+def test_clips_that_cannot_be_flown_are_put_aside_and_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    hard = ("--flight.max-draws", "1", "--flight.height-m", "3", "8", "--flight.clearance-m", "2.5")
+    assert main(small.render(tmp_path / "tiny", jobs=1, more=hard)) == 3
+    captured = capsys.readouterr()
+    missing = info(tmp_path / "tiny").missing
+    assert 1 <= len(missing) <= 3
+    assert f"verified, without {len(missing)} of 4 clips" in captured.out
+    for clip in missing:
+        assert f"put aside: {clip}: no free flight" in captured.err
+    assert len(PairDataset(tmp_path / "tiny")) == 4 * (4 - len(missing))
+    assert main(["status", str(tmp_path / "tiny")]) == 0
+    assert missing[0] in capsys.readouterr().out
 
 
 def test_commands_on_a_dataset(

@@ -1,18 +1,22 @@
 """Composing a recipe: who wins, what is refused, what its identity holds."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scenegen.foundation.canonical import canonical
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.strict_yaml import read_mapping
+from scenegen_datasets.layers import DEFAULT_LAYERS
 from scenegen_datasets.lock import recipe_id
 from scenegen_datasets.recipe import Recipe, resolve_recipe, settle_pairs
 from scenegen_datasets.resolve import Source, leaves, merge
 
+RECIPES = Path(__file__).parents[3] / "recipes"
 KEYS = [key for key, _, _ in leaves(Recipe)]
 
 
@@ -59,6 +63,7 @@ def test_a_number_is_a_number(key: str, value: Any) -> None:
         resolve_recipe([Source("r.yaml", nested(key, value))])
 
 
+@settings(deadline=None)
 @given(
     st.recursive(
         st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=5), st.lists, max_leaves=4
@@ -105,7 +110,8 @@ def test_identity_holds_what_decides_samples_and_nothing_else() -> None:
     ]:
         other = resolve_recipe([Source("r.yaml", nested(key, value))])
         assert recipe_id(other.canonical(), 1) != recipe_id(base.canonical(), 1)
-    same = resolve_recipe([Source("r.yaml", {"map": "city", "climate": {"latitude_deg": [-60, 65.0]}})])
+    defaults = {"map": "city", "climate": {"latitude_deg": [-60, 65.0]}, "layers": [*DEFAULT_LAYERS]}
+    same = resolve_recipe([Source("r.yaml", defaults)])
     assert canonical(same.canonical()) == canonical(base.canonical())
 
 
@@ -137,3 +143,9 @@ def test_pairs_are_rounded_up_and_short_jobs_shorten_the_clip() -> None:
 def test_merge_is_key_by_key() -> None:
     assert merge([{"a": {"b": 1, "c": 2}}, {"a": {"b": 3}}, {"d": [1]}]) == {"a": {"b": 3, "c": 2}, "d": [1]}
     assert merge([{"a": 1}, {"a": {"b": 2}}, {"a": 4}]) == {"a": 4}
+
+
+@pytest.mark.parametrize("path", sorted(RECIPES.glob("*.yaml")), ids=lambda p: p.stem)
+def test_the_recipes_of_the_project_are_sound(path: Path) -> None:
+    assert path.read_text(encoding="utf-8").startswith("#")
+    resolve_recipe([Source(path.name, read_mapping(path))])
