@@ -5,11 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float32, Float64
+from jaxtyping import Float32, Float64, UInt32
 
 from scenegen_render import backend
 from scenegen_render.camera import Camera
 
+_TILE_PX = 4
 _GOLDEN = 0.6180339887498949
 _RING_RADIUS = 0.425
 """Of the sub-samples around the centre [px]: least error of the covered share of a pixel behind straight edges."""
@@ -36,13 +37,23 @@ def subsample_pattern(count: int) -> Float64[np.ndarray, "count 2"]:
     return np.concatenate([[[0.5, 0.5]], others])
 
 
+def tiled(camera: Camera) -> UInt32[np.ndarray, "pixels"]:
+    """Row-major pixel indices in the order lanes take them: tiles of 4 x 4 pixels.
+
+    Sixteen lanes make one packet of rays; a square of pixels is more coherent than a strip (occlusion rays: a third).
+    """
+    row, column = np.divmod(np.arange(camera.height_px * camera.width_px), camera.width_px)
+    order = np.lexsort((column, row, column // _TILE_PX, row // _TILE_PX))
+    return order.astype(np.uint32)
+
+
 def image_plane(camera: Camera, pattern: Float64[np.ndarray, "count 2"]) -> Float32[np.ndarray, "rays 2"]:
-    """Camera-frame ray directions (x, y) at z = 1 of all pixels, row by row, the samples of a pixel side by side.
+    """Camera-frame ray directions (x, y) at z = 1 of all pixels, in tiles, the samples of a pixel side by side.
 
     With z = 1 and no normalisation, the distance along a ray *is* planar depth.
     """
-    rows, columns = np.mgrid[0 : camera.height_px, 0 : camera.width_px]
-    place = np.stack([columns, rows], axis=-1).reshape(-1, 1, 2) + pattern
+    rows, columns = np.divmod(tiled(camera), camera.width_px)
+    place = np.stack([columns, rows], axis=-1)[:, None, :] + pattern
     plane = (place - np.asarray(camera.centre_px)) / camera.focal_px
     return np.asarray(plane.reshape(-1, 2), np.float32)
 

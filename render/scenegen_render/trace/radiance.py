@@ -53,6 +53,12 @@ class Sampler:
     camera : Camera
     count : int
         Sub-samples per pixel.
+
+    Attributes
+    ----------
+    count : int
+    groups : int
+        Groups of up to four sub-samples that make up a pixel.
     """
 
     def __init__(self, camera: Camera, count: int) -> None:
@@ -61,11 +67,11 @@ class Sampler:
         self._metre_per_depth = 1.0 / camera.focal_px
         pattern = pixels.subsample_pattern(count)
         self._plane = pixels.on_device(pixels.image_plane(camera, pattern))
-        groups = count // self._group
-        self._corner = pixels.on_device(pixels.image_plane(camera, np.zeros((groups, 2))))
+        self.groups = count // self._group
+        self._corner = pixels.on_device(pixels.image_plane(camera, np.zeros((self.groups, 2))))
         self._offset = backend.upload(np.asarray(pattern / camera.focal_px, np.float32))
-        lanes = groups * camera.width_px * camera.height_px
-        self._in_pixel = backend.upload(np.arange(lanes, dtype=np.uint32) % np.uint32(groups))
+        lanes = np.arange(self.groups * camera.width_px * camera.height_px, dtype=np.uint32)
+        self._in_pixel = backend.upload(lanes % np.uint32(self.groups))
 
     def cast(self, lit: Lit, pose: DevicePose) -> Samples:
         """Send every sub-sample and shade what it meets."""
@@ -114,8 +120,7 @@ class Sampler:
     def pixels(self, groups: Any) -> Any:
         """Mean over the groups of each pixel, of the evaluated result of `merge`."""
         _, dr = backend.modules()
-        count = self.count // self._group
-        return groups if count == 1 else dr.block_sum(groups, count) * (1.0 / count)
+        return groups if self.groups == 1 else dr.block_sum(groups, self.groups) * (1.0 / self.groups)
 
     def _members(self, values: Any, lane: Any) -> list[Any]:
         """Values of the sub-samples of each group."""

@@ -37,6 +37,7 @@ class Tracer:
         self.knobs = knobs
         centre = np.array([[0.5, 0.5]])
         self._sampler = Sampler(camera, knobs.sub_samples)
+        self._pixel = backend.upload(pixels.tiled(camera))
         self._centres = pixels.on_device(pixels.image_plane(camera, centre))
 
     def light(
@@ -72,9 +73,19 @@ class Tracer:
         dr.eval(samples)
         layers = self._labels(lit, pose, samples, others)
         radiance = self._sampler.merge(lit, towards, samples)
-        dr.eval(layers, radiance)
+        if self._sampler.groups > 1:
+            dr.eval(radiance, layers)
         layers["radiance"] = self._sampler.pixels(radiance)
-        return self._frame({name: value.numpy() for name, value in layers.items()})
+        rows = {name: self._in_rows(value) for name, value in layers.items()}
+        dr.eval(rows)
+        return self._frame({name: value.numpy() for name, value in rows.items()})
+
+    def _in_rows(self, lanes: Any) -> Any:
+        """Put the values of the lanes, which go tile by tile, where they belong in the image."""
+        _, dr = backend.modules()
+        image = dr.empty(type(lanes), dr.width(self._pixel))
+        dr.scatter(image, lanes, self._pixel, mode=dr.ReduceMode.Permute)
+        return image
 
     def _labels(self, lit: Lit, pose: Pose, samples: Samples, others: list[Pose]) -> dict[str, Any]:
         """Layers of the ray through each pixel centre, which is the first sub-sample."""

@@ -12,60 +12,12 @@ from scenegen.radiometry.atmosphere import Atmosphere
 from scenegen_render import reference_scenes
 from scenegen_render.camera import Camera
 from scenegen_render.knobs import RenderKnobs
+from scenegen_render.reference_depth import reference_depth
 from scenegen_render.reference_scenes import looking
 from scenegen_render.scene import load
 from scenegen_render.trace import Tracer
 
 ONE_RAY = RenderKnobs(sub_samples=1)
-SLACK = 2e-4
-"""Barycentric margin of an edge inside which either neighbour may be hit: what float32 leaves of a ray at 300 m."""
-
-
-def oracle(mesh, camera: Camera, pose: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Planar depths by Moeller and Trumbore in float64 (doi:10.1080/10867651.1997.10487468).
-
-    Returns the nearest depth over triangles a trifle enlarged, over triangles a trifle shrunk, and the number of
-    pixels for which the two differ (a silhouette passes within float32 rounding of the pixel centre).
-    """
-    rows, columns = np.mgrid[0 : camera.height_px, 0 : camera.width_px] + 0.5
-    x = (columns - camera.centre_px[0]) / camera.focal_px
-    y = (rows - camera.centre_px[1]) / camera.focal_px
-    direction = np.stack([x, y, np.ones_like(x)], axis=-1) @ pose[:3, :3].T
-    corners = mesh.vertices.astype(np.float64)[mesh.faces] - pose[:3, 3]
-    local = corners @ pose[:3, :3]
-    near, far = np.full(x.shape, np.inf), np.full(x.shape, np.inf)
-    for (a, b, c), z in zip(corners, local, strict=True):
-        window = _window(z, camera)
-        if window is None:
-            continue
-        d = direction[window]
-        along, up = b - a, c - a
-        p = np.cross(d, up)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            scale = 1.0 / (p @ along)
-            u = -(p @ a) * scale
-            q = np.cross(-a, along)
-            v = (d @ q) * scale
-            t = (up @ q) * scale
-            margin = np.minimum(np.minimum(u, v), 1.0 - u - v)
-        for depth, least in ((near, -SLACK), (far, SLACK)):
-            seen = (margin >= least) & (t > 0)
-            depth[window] = np.where(seen, np.minimum(depth[window], t), depth[window])
-    return near, far, near != far
-
-
-def _window(corners: np.ndarray, camera: Camera) -> tuple[slice, slice] | None:
-    """Image rectangle that can show a triangle given in the camera frame."""
-    if (corners[:, 2] <= 0).all():
-        return None
-    if (corners[:, 2] < 1e-3).any():
-        return slice(None), slice(None)
-    place = corners[:, :2] / corners[:, 2:] * camera.focal_px + camera.centre_px
-    low, high = np.floor(place.min(axis=0)).astype(int) - 1, np.ceil(place.max(axis=0)).astype(int) + 1
-    if (high < 0).any() or low[0] >= camera.width_px or low[1] >= camera.height_px:
-        return None
-    low = np.maximum(low, 0)
-    return slice(low[1], high[1] + 1), slice(low[0], high[0] + 1)
 
 
 def test_depth_of_a_city_agrees_with_float64_ray_triangle_tests(city, loaded_city, warm_city, sky_light):
@@ -78,8 +30,9 @@ def test_depth_of_a_city_agrees_with_float64_ray_triangle_tests(city, loaded_cit
         place = (*(float(v) for v in rng.uniform(-100, 100, 2)), float(rng.uniform(62, 90)))
         pose = looking(place, float(rng.uniform(0, 360)), float(rng.uniform(-60, -10)))
         depth = tracer.frame(lit, pose, pose).depth.astype(np.float64)
-        near, far, unsure = oracle(city.mesh, camera, pose)
-        sure = ~unsure
+        truth = reference_depth(city.mesh, camera, pose)
+        near, far = truth.near, truth.far
+        sure, unsure = near == far, near != far
         assert (np.isinf(depth) == np.isinf(near))[sure].all()
         hit = sure & np.isfinite(near)
         assert hit.mean() > 0.3

@@ -6,7 +6,7 @@ from pydantic import ValidationError
 
 from scenegen_render.camera import Camera
 from scenegen_render.knobs import RenderKnobs
-from scenegen_render.trace.pixels import image_plane, subsample_pattern
+from scenegen_render.trace.pixels import image_plane, subsample_pattern, tiled
 
 COUNTS = [1, 3, 4, 5, 8, 9, 16, 64]
 
@@ -47,3 +47,13 @@ def test_directions_follow_the_pinhole_convention():
     plane = image_plane(camera, np.array([[0.5, 0.5]])).reshape(2, 4, 2)
     np.testing.assert_allclose(plane[0, 0], (-0.75, -0.25))  # upper left: x and y point right and down
     np.testing.assert_allclose(plane[1, 3], (0.75, 0.25))
+
+
+def test_lanes_visit_every_pixel_once_tile_by_tile():
+    camera = Camera.from_fov(10, 6, 90.0)
+    order = tiled(camera)
+    assert sorted(order) == list(range(60))
+    row, column = np.divmod(order[:16], 10)
+    assert row.max() == 3 and column.max() == 3
+    plane = image_plane(camera, np.array([[0.5, 0.5]]))
+    np.testing.assert_allclose(plane[:, 0], (order % 10 + 0.5 - 5.0) / 5.0, rtol=1e-6)
