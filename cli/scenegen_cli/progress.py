@@ -81,7 +81,7 @@ class Meter:
 
     @staticmethod
     def _rate(done: int, total: int, seconds: float) -> str:
-        """Rate over the whole run, worlds included, and what is left at that rate."""
-        if done == 0 or seconds <= 0.0:
+        """Rate over the whole run, worlds included, and what is left at that rate, once that means something."""
+        if done < 0.1 * total or seconds <= 0.0:
             return ""
         return f"{done / seconds:.1f} frames/s  {span((total - done) * seconds / done)} left"
