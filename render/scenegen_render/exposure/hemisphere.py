@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,13 @@ from jaxtyping import Float32, UInt32
 
 from scenegen.exposure import SKY_BINS
 from scenegen_render import backend
-from scenegen_render.exposure.directions import cosine_directions, tangents
+from scenegen_render.exposure.directions import cosine_directions, split_directions, tangents, upright_frame
 from scenegen_render.exposure.lanes import Lanes, launches
 from scenegen_render.exposure.rays import SiteRays
 from scenegen_render.scene import LoadedWorld
+
+_WALL = 0.05
+"""Largest vertical part of the normal of a wall (3 deg)."""
 
 
 def gather_list(
@@ -44,7 +48,7 @@ def gather_list(
 
 
 class _Fan:
-    """One direction set, turned for each site, and the kernel that traces it."""
+    """The direction sets, turned for each site, and the kernel that traces them."""
 
     def __init__(
         self, loaded: LoadedWorld, rays: SiteRays, directions: int, turn: Float32[np.ndarray, "sites"]
@@ -52,9 +56,15 @@ class _Fan:
         mi, dr = backend.modules()
         self.loaded, self.rays = loaded, rays
         normal = loaded.world.sites.normal[rays.order]
-        first, second = tangents(normal, turn[rays.order])
+        wall = np.abs(normal[:, 2]) < _WALL
+        axes = zip(upright_frame(normal), tangents(normal, np.zeros_like(turn)), strict=True)
+        first, second = (np.where(wall[:, None], upright, plain) for upright, plain in axes)
         self.first, self.second = backend.upload(first), backend.upload(second)
-        self.local = backend.upload(cosine_directions(directions).astype(np.float32))
+        self.turn = backend.upload(np.stack([turn[rays.order], wall.astype(np.float32)], axis=1))
+        spiral, split = cosine_directions(directions), split_directions(directions)
+        whole = np.arctan2(spiral[:, 1], spiral[:, 0]) / (2.0 * np.pi) % 1.0
+        self.spiral = backend.upload(np.stack([spiral[:, 2], whole], axis=1).astype(np.float32))
+        self.split = backend.upload(split.astype(np.float32))
         self.sites = dr.opaque(mi.UInt, len(rays.order))
 
     def trace(self, lanes: Lanes) -> Any:
@@ -68,11 +78,20 @@ class _Fan:
         return dr.select(valid, site, self.sites + sky_bin(toward.z))
 
     def _toward(self, lanes: Lanes) -> Any:
+        """World direction of each ray: its place on the disc, by the set that suits the site, then the site's frame."""
         mi, dr = backend.modules()
-        local = dr.gather(mi.Vector3f, self.local, lanes.row, lanes.active)
+        own = dr.gather(mi.Vector2f, self.turn, lanes.place, lanes.active)
+        spiral = dr.gather(mi.Vector2f, self.spiral, lanes.row, lanes.active)
+        split = dr.gather(mi.Vector3f, self.split, lanes.row, lanes.active)
+        wall, along = own.y > 0.5, split.y + own.x
+        half_circle = math.pi * (along - dr.floor(along) + split.z)
+        azimuth = dr.select(wall, half_circle, (2.0 * math.pi) * (spiral.y + own.x))
+        height = dr.select(wall, split.x, spiral.x)
+        sine, cosine = dr.sincos(azimuth)
+        radius = dr.sqrt(dr.maximum(1.0 - height * height, 0.0))
         axes = (self.first, self.second, self.rays.normal)
         first, second, normal = (dr.gather(mi.Vector3f, axis, lanes.place, lanes.active) for axis in axes)
-        return dr.normalize(first * local.x + second * local.y + normal * local.z)
+        return dr.normalize(first * (radius * cosine) + second * (radius * sine) + normal * height)
 
 
 def sky_bin(sine: Any) -> Any:

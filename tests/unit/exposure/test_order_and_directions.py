@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from scenegen.foundation.rng import stream
-from scenegen_render.exposure.directions import cosine_directions, tangents
+from scenegen_render.exposure.directions import cosine_directions, split_directions, tangents, upright_frame
 from scenegen_render.exposure.order import spatial_order
 
 
@@ -50,3 +50,21 @@ def test_spatial_order_is_a_permutation_that_keeps_neighbours_together() -> None
 
 def test_equal_positions_keep_their_order() -> None:
     np.testing.assert_array_equal(spatial_order(np.ones((5, 3), np.float32)), np.arange(5))
+
+
+def test_walls_split_their_hemisphere_at_the_horizon() -> None:
+    d = split_directions(64)
+    assert int((d[:, 2] == 0).sum()) == 32
+    for half in (0.0, 1.0):
+        ring = np.sort(d[d[:, 2] == half, 0]) ** 2 * 32
+        np.testing.assert_allclose(ring, np.arange(32) + 0.5)
+    assert float(d[:, 1].min()) >= 0.0
+    assert float(d[:, 1].max()) < 1.0
+
+
+def test_upright_frames_point_along_and_up() -> None:
+    azimuth = stream(4).uniform(0, 2 * np.pi, 50)
+    n = np.stack([np.cos(azimuth), np.sin(azimuth), np.zeros(50)], axis=1).astype(np.float32)
+    level, up = upright_frame(n)
+    np.testing.assert_allclose(up, np.broadcast_to([0.0, 0.0, 1.0], up.shape), atol=1e-6)
+    np.testing.assert_allclose(np.cross(level, up), n, atol=1e-6)
