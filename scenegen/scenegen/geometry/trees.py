@@ -34,7 +34,7 @@ def _icosahedron() -> np.ndarray:
     return np.asarray(points / np.linalg.norm(points, axis=1)[:, None])
 
 
-def broadleaf(rng: np.random.Generator, boughs: int = 6, cards: int = 42) -> Template:
+def broadleaf(rng: np.random.Generator, boughs: int = 6, cards: int = 92) -> Template:
     """A broad-leaved tree of unit height 1 and crown diameter about 0.75; scale it to size.
 
     Parameters
@@ -43,7 +43,7 @@ def broadleaf(rng: np.random.Generator, boughs: int = 6, cards: int = 42) -> Tem
     boughs : int
         Lumps of the crown.
     cards : int
-        Leaf cards around the lumps.
+        Leaf triangles around the lumps.
     """
     centre, radii = np.array([0.0, 0.0, 0.64]), np.array([0.37, 0.37, 0.36])
     direction = _fibonacci(boughs)
@@ -52,18 +52,18 @@ def broadleaf(rng: np.random.Generator, boughs: int = 6, cards: int = 42) -> Tem
     size = rng.uniform(0.13, 0.19, boughs)
     model = Modeller()
     _trunk(model, rng, middle)
-    _crown(model, rng, centre, radii, middle, size, cards, 0.055)
+    _crown(model, rng, centre, radii, middle, size, cards, 0.047)
     return model.finish()
 
 
-def conifer(rng: np.random.Generator, tiers: int = 6, cards: int = 60) -> Template:
+def conifer(rng: np.random.Generator, tiers: int = 6, cards: int = 96) -> Template:
     """A conifer of unit height and base diameter about 0.4; scale it to size."""
     level = (np.arange(tiers) + 0.5) / tiers
     middle = np.column_stack([rng.normal(0, 0.01, tiers), rng.normal(0, 0.01, tiers), 0.14 + 0.8 * level])
     size = 0.19 * (1 - level) + 0.03
     model = Modeller()
     model.tube(np.zeros(3), np.array([0, 0, 0.9]), 0.02, 0.006, BARK, Semantic.TREE, sides=5, sites=2)
-    _crown(model, rng, np.array([0, 0, 0.5]), np.array([0.24, 0.24, 0.52]), middle, size, cards, 0.05)
+    _crown(model, rng, np.array([0, 0, 0.5]), np.array([0.24, 0.24, 0.52]), middle, size, cards, 0.043)
     return model.finish()
 
 
@@ -112,7 +112,7 @@ def _crown(
     card_size: float,
 ) -> None:
     lumps = [
-        middle + _icosahedron() * radius * rng.uniform(0.7, 1.0, (12, 1)) * np.array([1, 1, 0.85])
+        middle + _icosahedron() * radius * rng.uniform(0.62, 0.95, (12, 1)) * np.array([1, 1, 0.85])
         for middle, radius in zip(boughs, size, strict=True)
     ]
     corners = _cards(rng, boughs, size, cards, card_size, centre, radii)
@@ -126,8 +126,8 @@ def _crown(
 
     for lump in lumps:
         model.mesh(lump, _ICOSAHEDRON_FACES, LEAVES, Semantic.TREE, sites_of(lump)[_ICOSAHEDRON_FACES])
-    faces = np.arange(4 * cards).reshape(-1, 4)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
-    owner = np.repeat(sites_of(corners.mean(axis=1)), 2)
+    faces = np.arange(3 * cards).reshape(-1, 3)
+    owner = sites_of(corners.mean(axis=1))
     model.mesh(corners.reshape(-1, 3), faces, LEAVES, Semantic.TREE, np.repeat(owner[:, None], 3, axis=1))
 
 
@@ -140,7 +140,7 @@ def _cards(
     centre: np.ndarray,
     radii: np.ndarray,
 ) -> np.ndarray:
-    """Bent leaf cards on the skins of the boughs, facing away from the crown's middle."""
+    """Drooping leaf triangles on the skins of the boughs, facing away from the crown's middle."""
     bough = np.arange(cards) % len(boughs)
     direction = rng.normal(size=(cards, 3))
     direction /= np.linalg.norm(direction, axis=1)[:, None]
@@ -152,13 +152,13 @@ def _cards(
     u = np.cross(facing, rng.normal(size=(cards, 3)))
     u /= np.linalg.norm(u, axis=1)[:, None]
     v = np.cross(facing, u)
-    half = card_size * rng.uniform(0.7, 1.3, (cards, 1))
-    droop = -0.35 * half * facing
-    corners = [middle - half * u + droop, middle - half * v, middle + half * u + droop, middle + half * v]
+    half = card_size * rng.uniform(0.7, 1.4, (cards, 1))
+    tip = middle + half * (1.3 * u - 0.3 * facing)
+    corners = [tip, middle - half * (0.8 * u - 0.9 * v), middle - half * (0.8 * u + 0.9 * v)]
     return np.stack(corners, axis=1)
 
 
-def shrub(rng: np.random.Generator, cards: int = 8) -> Template:
+def shrub(rng: np.random.Generator, cards: int = 14) -> Template:
     """A shrub or a metre of hedge of unit size, standing on z = 0; one slot, three sites."""
     model = Modeller()
     centre, radii = np.array([0, 0, 0.5]), np.array([0.62, 0.62, 0.62])
@@ -175,7 +175,7 @@ def shrub(rng: np.random.Generator, cards: int = 8) -> Template:
         model.mesh(lump, _ICOSAHEDRON_FACES, 0, Semantic.SHRUB, sites_of(lump)[_ICOSAHEDRON_FACES])
     corners = _cards(rng, boughs, np.array([0.4, 0.4]), cards, 0.14, centre, radii)
     corners[..., 2] = np.maximum(corners[..., 2], 0.05)
-    faces = np.arange(4 * cards).reshape(-1, 4)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
-    owner = np.repeat(sites_of(corners.mean(axis=1)), 2)
+    faces = np.arange(3 * cards).reshape(-1, 3)
+    owner = sites_of(corners.mean(axis=1))
     model.mesh(corners.reshape(-1, 3), faces, 0, Semantic.SHRUB, np.repeat(owner[:, None], 3, axis=1))
     return model.finish()

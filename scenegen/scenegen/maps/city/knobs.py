@@ -64,7 +64,7 @@ class CityKnobs(Section):
     street_tree_spacing_m: Annotated[Span, AfterValidator(_within(5.0, 100.0))] = (11.0, 20.0)
     """Distance between street trees [m] where a street has any."""
 
-    yard_trees_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 15.0))] = (2.0, 4.5)
+    yard_trees_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 15.0))] = (2.0, 4.2)
     """Trees in yards."""
 
     park_trees_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 25.0))] = (5.0, 10.0)
