@@ -100,7 +100,9 @@ def _help() -> str:
         "usage: scenegen COMMAND [options]\n\n"
         "Paired thermal and depth datasets from procedural worlds.\n\n"
         f"{lines}\n\n"
-        "'scenegen COMMAND --help' explains one; start with 'scenegen demo'."
+        "'scenegen COMMAND --help' explains one; start with 'scenegen demo'.\n"
+        "exit codes: 0 ok, 1 a check failed, 2 bad input, 3 finished without some clips, 4 no space left, "
+        "130/143 interrupted"
     )
 
 
