@@ -126,6 +126,15 @@ def test_every_failing_call_is_one_clear_error_and_leaves_nothing(
             pytest.fail(f"{name} never ran out")
 
 
+def test_the_receipt_comes_last(fakes: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    job = fakes.jobs(1)[0]
+    order: list[str] = []
+    original = os.replace
+    monkeypatch.setattr(os, "replace", lambda a, b: (order.append(Path(b).name), original(a, b))[1])
+    commit_clip(tmp_path, fakes.record(job), fakes.encoded(job), fingerprint="f")
+    assert order == ["000.tar", "000.json"]
+
+
 def test_a_full_device_is_told_as_such(fakes: ModuleType, tmp_path: Path) -> None:
     """A real limit of the operating system, in a child process: half a shard fits."""
     code = f"""

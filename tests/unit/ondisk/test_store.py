@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
@@ -12,9 +13,11 @@ import pytest
 from scenegen.foundation.canonical import canonical
 from scenegen.foundation.errors import DatasetError, InputError
 from scenegen_datasets.commit import commit_clip
+from scenegen_datasets.content import clip_digest, content_id
 from scenegen_datasets.finish import finish
 from scenegen_datasets.info import info
 from scenegen_datasets.lock import fingerprint_id, recipe_id
+from scenegen_datasets.receipt import read_receipt
 from scenegen_datasets.store import create_or_open, finished, read_lock
 
 
@@ -185,6 +188,40 @@ def test_content_id_is_of_decoded_arrays_not_of_files(
     one, two = (json.loads((d / "dataset.json").read_bytes()) for d in (a, b))
     assert one["sums"] != two["sums"]
     assert one["content_id"] == two["content_id"]
+
+
+def test_content_id_changes_with_any_array_name_or_clip(fakes: ModuleType, pristine: Path) -> None:
+    receipts = [read_receipt(pristine, job.receipt) for job in fakes.jobs(3)]
+    digests = [clip_digest(r) for r in receipts]
+    first = receipts[0].frames[0]
+    changed = replace(first, digests={**first.digests, "depth": "0" * 64})
+    other = clip_digest(replace(receipts[0], frames=(changed, *receipts[0].frames[1:])))
+    renamed = clip_digest(replace(receipts[0], clip=receipts[1].clip))
+    variants = [digests, digests[:2], digests[::-1], [other, *digests[1:]], [renamed, *digests[1:]]]
+    assert len({content_id(v) for v in variants}) == len(variants)
+
+
+def test_a_finish_that_dies_halfway_leaves_no_claim_of_completeness(
+    fakes: ModuleType, dataset: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Each file but the last may be new while others are old; then nothing may say that all is there."""
+    from scenegen_datasets import finish as module
+
+    before = fakes.tree(dataset)
+    names: list[str] = []
+
+    def failing(path: Path, data: bytes) -> None:
+        names.append(path.name)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(module, "write_atomic", failing)
+    with pytest.raises(KeyboardInterrupt):
+        finish(dataset, fakes.jobs(6), version="1.1.0")
+    assert names == ["clips.jsonl"]
+    assert not (dataset / "dataset.json").exists()
+    monkeypatch.undo()
+    finish(dataset, fakes.jobs(6))
+    assert fakes.tree(dataset) == before
 
 
 def test_the_lock_is_canonical_and_holds_no_time_or_place(fakes: ModuleType, pristine: Path) -> None:
