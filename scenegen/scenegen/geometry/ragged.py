@@ -27,4 +27,4 @@ def ragged_grid(
 
 def offsets(counts: Int64[np.ndarray, "items"]) -> Int64[np.ndarray, "items"]:
     """Start of each item in the flat array."""
-    return (np.cumsum(counts) - counts).astype(np.int64)
+    return np.asarray(np.cumsum(counts) - counts, np.int64)

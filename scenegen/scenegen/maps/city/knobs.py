@@ -28,8 +28,8 @@ Share = Annotated[Span, AfterValidator(_within(0.0, 1.0))]
 class CityKnobs(Section):
     """Distributions of the city family; every world draws its own values inside them."""
 
-    extent_m: Annotated[Span, AfterValidator(_within(400.0, 1000.0))] = (710.0, 750.0)
-    """Square root of the detailed area [m], 400 to 1,000. The ground mesh gets coarser as it grows."""
+    extent_m: Annotated[Span, AfterValidator(_within(400.0, 860.0))] = (710.0, 750.0)
+    """Square root of the detailed area [m], 400 to 860: beyond, a world has too many thermal sites."""
 
     block_area_m2: Annotated[Span, AfterValidator(_within(3000.0, 40000.0))] = (7000.0, 13000.0)
     """Area [m^2] at which the street network stops dividing a block, drawn per block."""
