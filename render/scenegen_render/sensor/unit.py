@@ -30,7 +30,7 @@ class CameraUnit:
 
     def offset(self) -> Float32[np.ndarray, "rows columns"]:
         """Sum of the three parts [W m^-2 sr^-1]."""
-        return self.pixel + self.column[None, :] + self.row[:, None]
+        return np.asarray(self.pixel + self.column[None, :] + self.row[:, None])
 
 
 def draw_unit(
