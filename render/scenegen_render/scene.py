@@ -130,6 +130,7 @@ def _check(world: World) -> None:
         (bool((np.abs(mesh.vertices) < _FAR_M).all()), "reaches beyond 100 km; centre it on the origin"),
         (int(mesh.faces.max(initial=0)) < len(mesh.vertices), "has a face with a vertex index out of range"),
         (int(world.corner_site.max(initial=0)) < sites, "has a face corner whose site does not exist"),
+        (int(world.face_object.min(initial=1)) > 0, "has a face of object 0, which is reserved for the sky"),
         (
             int(world.face_surface.max(initial=0)) < len(world.palette),
             "has a face whose surface does not exist",

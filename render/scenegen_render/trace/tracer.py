@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float32, Shaped
+from jaxtyping import Bool, Float32, Shaped
 
 from scenegen.thermal_state import ThermalState
 from scenegen_render import backend
@@ -147,19 +147,34 @@ class Tracer:
             covisible_back=image("flow_back_covisible") if self.knobs.backward_flow else None,
             normal=np.stack([image(f"normal_{k}") for k in "xyz"], axis=-1) if self.knobs.normals else None,
         )
-        _guard(frame)
+        check_finite(frame)
         return frame
 
 
-def _guard(frame: Frame) -> None:
-    """Nothing non-finite leaves the tracer but the depth of the sky and the flow of points behind a camera."""
+def check_finite(frame: Frame) -> None:
+    """Nothing non-finite leaves the tracer but the depth of the sky and the flow of points behind a camera.
+
+    Raises
+    ------
+    FloatingPointError
+        Names the layers that are broken.
+    """
+    flows = [(frame.flow, frame.covisible)]
+    if frame.flow_back is not None and frame.covisible_back is not None:
+        flows.append((frame.flow_back, frame.covisible_back))
     sky = frame.instance == 0
     holds = {
-        "radiance": bool(np.isfinite(frame.radiance).all()),
-        "temperature": bool(np.isfinite(frame.temperature).all()),
-        "depth": bool((np.isfinite(frame.depth) != np.isposinf(frame.depth)).all()),
-        "flow": not np.isinf(frame.flow).any(),
+        "radiance": np.isfinite(frame.radiance.sum()),  # one pass: a sum is finite only if all its terms are
+        "temperature": np.isfinite(frame.temperature.sum()),
+        "depth": np.array_equal(np.isposinf(frame.depth), sky) and frame.depth.min() > 0,
+        "flow": all(_sound(flow, seen) for flow, seen in flows),
     }
     broken = [name for name, ok in holds.items() if not ok]
-    if broken or sky.size == 0:
+    if broken:
         raise FloatingPointError(f"the tracer produced non-finite values in: {', '.join(broken)}")
+
+
+def _sound(flow: Float32[np.ndarray, "rows columns 2"], covisible: Bool[np.ndarray, "rows columns"]) -> bool:
+    """No infinity anywhere, and numbers wherever the point is seen from the other pose."""
+    extremes = np.fmin.reduce(flow, axis=None), np.fmax.reduce(flow, axis=None)  # these pass over NaN
+    return not np.isinf(extremes).any() and not (covisible & np.isnan(flow[..., 0])).any()

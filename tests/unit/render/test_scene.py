@@ -18,6 +18,7 @@ from scenegen_render.scene import load
 from scenegen_render.trace import Tracer
 from scenegen_render.trace.lit import light
 from scenegen_render.trace.surface import unpack_normal
+from scenegen_render.trace.tracer import check_finite
 
 ASPHALT = Surface(material("asphalt_aged"), 0.96, 0.9)
 
@@ -47,6 +48,7 @@ def _with_face(world: World, index: int) -> World:
         (lambda w: _with_face(w, 10_000), "vertex index out of range"),
         (lambda w: replace(w, corner_site=w.corner_site + np.uint32(1)), "site does not exist"),
         (lambda w: replace(w, face_surface=w.face_surface + np.uint16(1)), "surface does not exist"),
+        (lambda w: replace(w, face_object=w.face_object - np.uint32(1)), "reserved for the sky"),
         (lambda w: replace(w, mesh=TriangleMesh(w.mesh.vertices, w.mesh.faces[:0])), "no triangles"),
     ],
 )
@@ -104,6 +106,31 @@ def test_packed_normals_lose_less_than_a_ten_thousandth_of_a_radian():
     np.testing.assert_allclose(unpacked, normal, atol=1e-4)
     np.testing.assert_allclose(unpacked[:6], normal[:6], atol=1e-7)
     del mi
+
+
+@pytest.mark.parametrize(
+    ("layer", "value", "stage"),
+    [
+        ("radiance", np.nan, "radiance"),
+        ("radiance", np.inf, "radiance"),
+        ("temperature", np.nan, "temperature"),
+        ("depth", np.inf, "depth"),
+        ("depth", np.nan, "depth"),
+        ("flow", np.nan, "flow"),
+        ("flow", -np.inf, "flow"),
+    ],
+)
+def test_nothing_non_finite_leaves_the_tracer(plate, layer, value, stage):
+    tracer = Tracer(Camera.from_fov(8, 8, 60.0), RenderKnobs(sub_samples=1))
+    state = reference_scenes.uniform_state(plate, 300.0, Atmosphere(290.0, 10.0))
+    lit = tracer.light(load(plate), state, np.zeros(len(plate.sites.area), np.float32))
+    pose = reference_scenes.looking((0.0, 0.0, 20.0), 0.0, -90.0)
+    frame = tracer.frame(lit, pose, pose)
+    check_finite(frame)
+    spoiled = getattr(frame, layer).copy()
+    spoiled[3, 4] = value
+    with pytest.raises(FloatingPointError, match=stage):
+        check_finite(replace(frame, **{layer: spoiled}))
 
 
 @pytest.mark.slow
