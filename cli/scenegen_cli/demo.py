@@ -36,7 +36,6 @@ def run(arguments: Sequence[str]) -> int:
         recipe=recipe,
         pairs=CLIPS * PAIRS_PER_CLIP,
         root=command.out,
-        name=command.out.resolve().name,
         asked=asked,
         processes=processes(command.jobs),
     )

@@ -57,7 +57,6 @@ def run(arguments: Sequence[str]) -> int:
         recipe=recipe,
         pairs=pairs,
         root=out,
-        name=out.resolve().name,
         asked=asked,
         processes=processes(command.jobs),
         allow_mixed=command.allow_mixed,

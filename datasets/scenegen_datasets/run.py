@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -19,6 +20,7 @@ from scenegen.foundation.pool import Done, Event, Failed, Note, Pool, Strike, Ta
 from scenegen_datasets.finish import finish
 from scenegen_datasets.info import DatasetInfo
 from scenegen_datasets.job import ClipJob
+from scenegen_datasets.layers import layers_by_member
 from scenegen_datasets.lock import fingerprint_id, make_lock
 from scenegen_datasets.pictures.preview import write_preview
 from scenegen_datasets.plan import plan
@@ -38,8 +40,18 @@ WORKER_ENVIRONMENT = {
 }
 """Of every worker; set before its interpreter starts, because these are read once."""
 
-BYTES_PER_PIXEL, BYTES_PER_FRAME = 17.0, 15_000
-"""Size on disk of one frame with the default layers; measured, on the high side."""
+BYTES_PER_PIXEL = {
+    "thermal.png": 1.1,
+    "depth.tiff": 2.3,
+    "flow.exr": 8.2,
+    "truth.exr": 7.7,
+    "flow_back.exr": 8.4,
+    "normal.exr": 10.0,
+}
+"""Size of each member of a frame on disk; measured on city flights, on the high side."""
+
+BYTES_PER_FRAME = 12_000
+"""Headers, padding and metadata of a frame."""
 
 SHARE_FROM = 3
 """A world is exposed a second time by another worker if at least this many of its clips are open."""
@@ -59,8 +71,6 @@ class Job:
         A whole number of clips (`scenegen_datasets.recipe.settle_pairs`).
     root : Path
         Dataset directory; made if it does not exist.
-    name : str
-        Of the dataset.
     asked : mapping
         What the user asked for, as plain data, for ``recipe.yaml``.
     processes : int
@@ -72,10 +82,14 @@ class Job:
     recipe: Recipe
     pairs: int
     root: Path
-    name: str
     asked: Mapping[str, Any]
     processes: int
     allow_mixed: bool = False
+
+    @property
+    def name(self) -> str:
+        """Of the dataset: its directory's, in letters every tool takes."""
+        return re.sub(r"[^a-z0-9._-]+", "-", self.root.resolve().name.lower()).strip("-.")[:64] or "dataset"
 
     @cached_property
     def clips(self) -> tuple[ClipJob, ...]:
@@ -88,7 +102,8 @@ class Job:
         """Estimated size of the whole dataset."""
         camera = self.recipe.camera
         frames = sum(clip.frames for clip in self.clips)
-        return round(frames * (camera.width_px * camera.height_px * BYTES_PER_PIXEL + BYTES_PER_FRAME))
+        per_pixel = sum(BYTES_PER_PIXEL[member] for member in layers_by_member(self.recipe.stored_layers))
+        return round(frames * (camera.width_px * camera.height_px * per_pixel + BYTES_PER_FRAME))
 
 
 @dataclass(frozen=True)
