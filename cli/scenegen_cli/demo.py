@@ -10,7 +10,7 @@ from scenegen_cli.console import say
 from scenegen_cli.making import make, pictures, processes
 from scenegen_cli.parse import HelpShown, parse
 from scenegen_cli.render import ask
-from scenegen_datasets.run import Job
+from scenegen_datasets.render_job import Job
 
 CLIPS, PAIRS_PER_CLIP = 4, 16
 

@@ -14,7 +14,8 @@ from scenegen_cli.console import note, say, say_json, size
 from scenegen_cli.leaving import TerminatedError
 from scenegen_cli.progress import Meter
 from scenegen_datasets.probe import render_fingerprint
-from scenegen_datasets.run import Job, Outcome, prepare, run
+from scenegen_datasets.render_job import Job, prepare
+from scenegen_datasets.run import Outcome, run
 from scenegen_datasets.store import DATASET
 from scenegen_datasets.verify import Finding, VerifyReport, verify
 

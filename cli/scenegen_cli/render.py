@@ -13,8 +13,8 @@ from scenegen_cli.console import say, say_json
 from scenegen_cli.making import make, plan_in_words, processes
 from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
 from scenegen_datasets.recipe import Recipe, resolve_recipe, settle_pairs
+from scenegen_datasets.render_job import Job
 from scenegen_datasets.resolve import Source, leaves, merge
-from scenegen_datasets.run import Job
 
 
 @dataclass(frozen=True)

@@ -2,14 +2,9 @@
 
 from __future__ import annotations
 
-import os
-import re
-import shutil
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
-from functools import cached_property
-from pathlib import Path
 from typing import Any
 
 import yaml
@@ -20,13 +15,12 @@ from scenegen.foundation.pool import Done, Event, Failed, Note, Pool, Strike, Ta
 from scenegen_datasets.finish import finish
 from scenegen_datasets.info import DatasetInfo
 from scenegen_datasets.job import ClipJob
-from scenegen_datasets.layers import layers_by_member
 from scenegen_datasets.lock import fingerprint_id, make_lock
 from scenegen_datasets.pictures.preview import write_preview
-from scenegen_datasets.plan import plan
-from scenegen_datasets.recipe import SCENE_SEMANTICS, Recipe
+from scenegen_datasets.recipe import SCENE_SEMANTICS
+from scenegen_datasets.render_job import Job, prepare
 from scenegen_datasets.run_log import RunLog, machine
-from scenegen_datasets.store import check_output, clean, create_or_open, finished
+from scenegen_datasets.store import clean, create_or_open, finished
 
 WORKER_ENVIRONMENT = {
     **dict.fromkeys(
@@ -40,70 +34,11 @@ WORKER_ENVIRONMENT = {
 }
 """Of every worker; set before its interpreter starts, because these are read once."""
 
-BYTES_PER_PIXEL = {
-    "thermal.png": 1.1,
-    "depth.tiff": 2.3,
-    "flow.exr": 8.2,
-    "truth.exr": 7.7,
-    "flow_back.exr": 8.4,
-    "normal.exr": 10.0,
-}
-"""Size of each member of a frame on disk; measured on city flights, on the high side."""
-
-BYTES_PER_FRAME = 12_000
-"""Headers, padding and metadata of a frame."""
-
 SHARE_FROM = 3
 """A world is exposed a second time by another worker if at least this many of its clips are open."""
 
 GIVE_UP_AFTER = 3
 """Clips that may fail at the start of a job before a single one succeeds."""
-
-
-@dataclass(frozen=True)
-class Job:
-    """What to make, where.
-
-    Attributes
-    ----------
-    recipe : Recipe
-    pairs : int
-        A whole number of clips (`scenegen_datasets.recipe.settle_pairs`).
-    root : Path
-        Dataset directory; made if it does not exist.
-    asked : mapping
-        What the user asked for, as plain data, for ``recipe.yaml``.
-    processes : int
-        Worker processes.
-    allow_mixed : bool
-        Accept frames of another render fingerprint in the same dataset.
-    """
-
-    recipe: Recipe
-    pairs: int
-    root: Path
-    asked: Mapping[str, Any]
-    processes: int
-    allow_mixed: bool = False
-
-    @property
-    def name(self) -> str:
-        """Of the dataset: its directory's, in letters every tool takes."""
-        return re.sub(r"[^a-z0-9._-]+", "-", self.root.resolve().name.lower()).strip("-.")[:64] or "dataset"
-
-    @cached_property
-    def clips(self) -> tuple[ClipJob, ...]:
-        """The plan, as far as it is to be made."""
-        recipe = self.recipe
-        return plan(recipe.map, recipe.clips_per_world, recipe.pairs_per_clip, self.pairs)
-
-    @property
-    def bytes(self) -> int:
-        """Estimated size of the whole dataset."""
-        camera = self.recipe.camera
-        frames = sum(clip.frames for clip in self.clips)
-        per_pixel = sum(BYTES_PER_PIXEL[member] for member in layers_by_member(self.recipe.stored_layers))
-        return round(frames * (camera.width_px * camera.height_px * per_pixel + BYTES_PER_FRAME))
 
 
 @dataclass(frozen=True)
@@ -284,48 +219,6 @@ class JobError(ScenegenError, RuntimeError):
     """A job stopped because it cannot get anywhere."""
 
     exit_code = 1
-
-
-def prepare(job: Job) -> None:
-    """Make the directory, after refusing what cannot end well; nothing is started, and nothing written in vain.
-
-    Raises
-    ------
-    InputError
-        If the output cannot be written, or holds something that is not a dataset.
-    NoSpaceError
-        If what is missing does not fit on the device.
-    """
-    try:
-        existing = next(p for p in (job.root.absolute(), *job.root.absolute().parents) if p.exists())
-        if not existing.is_dir():
-            raise InputError(f"--out {job.root}: {existing} is a file; name a directory")
-        if not os.access(existing, os.W_OK | os.X_OK):
-            raise InputError(f"--out {job.root}: {existing} cannot be written; choose another --out")
-        if existing == job.root.absolute():
-            check_output(job.root)
-        device = shutil.disk_usage(existing)
-        done = finished(job.root) if job.root.is_dir() else set()
-    except ScenegenError:
-        raise
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise InputError(
-            f"--out {str(job.root)[:80]!r}: cannot be used: {reason}; choose another --out"
-        ) from None
-    missing = sum(clip.name not in done for clip in job.clips)
-    need, free = job.bytes * missing / len(job.clips), device.free
-    if need > free and device.total > 0:  # a pseudo file system has no size at all
-        raise NoSpaceError(
-            f"{job.root}: about {need / 1e9:.1f} GB are needed and {free / 1e9:.1f} GB are free; "
-            "ask for fewer pairs or fewer layers, or choose another --out"
-        )
-    try:
-        job.root.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"--out {job.root}: cannot be made: {error.strerror}; choose another --out"
-        ) from None
 
 
 def _yaml(asked: Mapping[str, Any]) -> str:

@@ -6,7 +6,7 @@ import pytest
 
 from scenegen.foundation.errors import InputError, NoSpaceError
 from scenegen_datasets.recipe import resolve_recipe
-from scenegen_datasets.run import Job, prepare
+from scenegen_datasets.render_job import Job, prepare
 
 
 def job(root: Path, pairs: int = 128) -> Job:
@@ -42,8 +42,8 @@ def test_what_does_not_fit_is_refused(tmp_path: Path, monkeypatch: pytest.Monkey
     class Usage:
         total, free = 10**9, 10**6
 
-    monkeypatch.setattr("scenegen_datasets.run.shutil.disk_usage", lambda _: Usage)
-    with pytest.raises(NoSpaceError, match=r"about 0\.1 GB are needed and 0\.0 GB are free"):
+    monkeypatch.setattr("scenegen_datasets.render_job.shutil.disk_usage", lambda _: Usage)
+    with pytest.raises(NoSpaceError, match=r"about 0\.2 GB are needed and 0\.0 GB are free"):
         prepare(job(tmp_path / "new"))
     assert not (tmp_path / "new").exists()
 
