@@ -7,22 +7,15 @@ normally, by an exception, by Ctrl-C, or by SIGKILL of the parent.
 
 from __future__ import annotations
 
-import contextlib
-import json
-import os
-import signal
-import subprocess
-import sys
-import tempfile
-import time
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from multiprocessing.connection import Pipe, wait
+from multiprocessing.connection import wait
 from typing import Any
 
 from scenegen.foundation.agenda import Agenda, Task
 from scenegen.foundation.errors import ScenegenError
+from scenegen.foundation.worker_process import WorkerProcess
 
 STARTUP_DEATHS = 3
 
@@ -123,7 +116,7 @@ class Pool:
         self._factory, self._setup, self._jobs = factory, dict(setup), max(1, jobs)
         self._environment = dict(environment or {})
         self._silence_s, self._strikes, self._share_from = silence_s, max(1, strikes), share_from
-        self._workers: list[_Worker] = []
+        self._workers: list[WorkerProcess] = []
         self._struck: Counter[str] = Counter()
         self._startup_deaths = 0
 
@@ -176,21 +169,21 @@ class Pool:
             task = agenda.take(None, self._groups_without(None))
             if task is None:
                 return
-            worker = _Worker(self._factory, self._setup, self._environment)
+            worker = WorkerProcess(self._factory, self._setup, self._environment)
             self._workers.append(worker)
             worker.give(task)
 
-    def _groups_without(self, worker: _Worker | None) -> set[str]:
+    def _groups_without(self, worker: WorkerProcess | None) -> set[str]:
         return {
             w.group for w in self._workers if w is not worker and w.group is not None and w.task is not None
         }
 
-    def _awake(self, busy: list[_Worker]) -> list[_Worker]:
+    def _awake(self, busy: list[WorkerProcess]) -> list[WorkerProcess]:
         patience = max(0.0, min(self._silence_s - w.silent_s() for w in busy))
         awake = set(wait([w.connection for w in self._workers], timeout=min(patience + 0.01, 60.0)))
         return [w for w in self._workers if w.connection in awake]
 
-    def _hear(self, worker: _Worker, agenda: Agenda) -> Iterator[Event]:
+    def _hear(self, worker: WorkerProcess, agenda: Agenda) -> Iterator[Event]:
         try:
             kind, value = worker.receive()
         except (EOFError, OSError):
@@ -211,7 +204,7 @@ class Pool:
             failure = Failure(value["message"], value["exit_code"], value["traceback"])
             yield from self._strike(task, failure, agenda)
 
-    def _died(self, worker: _Worker, agenda: Agenda, how: str) -> Iterator[Event]:
+    def _died(self, worker: WorkerProcess, agenda: Agenda, how: str) -> Iterator[Event]:
         if worker not in self._workers:
             return
         self._workers.remove(worker)
@@ -229,74 +222,6 @@ class Pool:
         else:
             agenda.put_back(task)
             yield Strike(task, failure, self._struck[task.key])
-
-
-class _Worker:
-    """The parent's end of one worker process."""
-
-    def __init__(self, factory: str, setup: dict[str, Any], environment: Mapping[str, str]) -> None:
-        self.connection, theirs = Pipe(duplex=True)
-        self._log = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the worker
-        # A process group of its own: Ctrl-C in a terminal reaches the parent alone, which then decides.
-        self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "scenegen.foundation.worker", str(theirs.fileno()), factory],
-            env={**os.environ, **environment},
-            pass_fds=[theirs.fileno()],
-            stdin=subprocess.DEVNULL,
-            stdout=self._log,
-            stderr=self._log,
-            process_group=0,
-        )
-        theirs.close()
-        self.pid = self._process.pid
-        self.task: Task | None = None
-        self.group: str | None = None
-        self.ready = False
-        self.log = ""
-        self._heard = time.monotonic()
-        self._send(setup)
-
-    def give(self, task: Task) -> None:
-        """Hand a task over; its deadline starts now."""
-        self.task, self.group, self._heard = task, task.group, time.monotonic()
-        self._send(task.payload)
-
-    def receive(self) -> tuple[str, dict[str, Any]]:
-        """Read one message; EOFError if the process is gone."""
-        kind, value = json.loads(self.connection.recv_bytes())
-        self._heard = time.monotonic()
-        self.ready = self.ready or kind == "ready"
-        return kind, value
-
-    def silent_s(self) -> float:
-        """Seconds since the last sign of life."""
-        return time.monotonic() - self._heard
-
-    def kill(self) -> None:
-        """SIGKILL, and wait: a dead worker holds neither memory nor files. A second call does nothing."""
-        self._process.kill()
-        self._process.wait()
-        self.connection.close()
-        if not self._log.closed:
-            self._log.seek(max(0, self._log.seek(0, os.SEEK_END) - 2000))
-            self.log = self._log.read().decode("utf-8", "replace")
-            self._log.close()
-
-    def bury(self) -> str:
-        """Collect a process that closed its line, and say how it ended."""
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            self._process.wait(timeout=5)  # a core dump may take a moment
-        self.kill()
-        code = self._process.returncode
-        if code is not None and code < 0:
-            return f"was killed by {signal.Signals(-code).name}"
-        return f"exited with code {code}"
-
-    def _send(self, value: Mapping[str, Any]) -> None:
-        try:
-            self.connection.send_bytes(json.dumps(value, allow_nan=False).encode())
-        except OSError:
-            return  # it died; the next read finds out and says how
 
 
 __all__ = ["Done", "Event", "Failed", "Failure", "Note", "Pool", "Strike", "Task", "WorkerSetupError"]
