@@ -14,7 +14,7 @@ class ExposureKnobs(Section):
 
     directions: Annotated[Count, Field(ge=32, le=1024)] = 64
     """Rays over the hemisphere of each site."""
-    sun_step_min: Annotated[Number, Field(ge=2.0, le=120.0)] = 15.0
+    sun_step_min: Annotated[Number, Field(ge=2.0, le=120.0)] = 20.0
     """Longest step between sun positions [min]; shadow edges are found eight times finer."""
     smoothing: bool = True
     """Average over mesh neighbours on the same facet that see the same."""
