@@ -20,8 +20,8 @@ def _centred(count: int) -> int:
 class RenderKnobs(Section):
     """How a frame is traced and which optional layers it carries."""
 
-    sub_samples: Annotated[Count, Field(ge=1, le=64), AfterValidator(_centred)] = 4
-    """Rays per pixel for the radiance, 1 or 3 to 64. One is the pixel centre's, the source of all labels."""
+    sub_samples: Annotated[Count, Field(ge=1, le=256), AfterValidator(_centred)] = 4
+    """Rays per pixel for the radiance, 1 or 3 to 256. One is the pixel centre's, the source of all labels."""
 
     backward_flow: bool = False
     """Also store flow and covisibility towards the previous frame."""

@@ -39,7 +39,7 @@ def test_two_sub_samples_are_refused_with_the_reason():
     with pytest.raises(ValidationError, match="choose 1, 3 or more"):
         RenderKnobs(sub_samples=2)
     with pytest.raises(ValidationError):
-        RenderKnobs(sub_samples=65)
+        RenderKnobs(sub_samples=257)
 
 
 def test_directions_follow_the_pinhole_convention():
