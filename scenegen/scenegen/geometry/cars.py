@@ -6,6 +6,7 @@ import numpy as np
 
 from scenegen.classes import Semantic
 from scenegen.geometry.modelling import Modeller
+from scenegen.geometry.part import LUMP_STANDOFF_M
 from scenegen.geometry.template import Template
 
 PAINT, GLASS, RUBBER = 0, 1, 2
@@ -76,12 +77,17 @@ def _orient(quads: np.ndarray, outward: np.ndarray) -> np.ndarray:
 
 
 def _wheels(model: Modeller, half: float, rear: float) -> None:
-    site = model.site(np.array([0.0, 0.0, 0.31]), np.array([0.0, 0.0, -1.0]))
+    """Four wheels; the two of a side share a site between them, just outside the body, that looks sideways."""
+    flank = half + 0.02
+    site = {
+        side: model.site(np.array([0.0, side * flank, 0.31]), np.array([0.0, side, 0.0]), LUMP_STANDOFF_M)
+        for side in (-1.0, 1.0)
+    }
     angle = 2 * np.pi * np.arange(_RIM) / _RIM
     rim = np.column_stack([np.cos(angle), np.sin(angle)]) * 0.31
     for x in (rear + 0.75, 1.4):
         for side in (-1.0, 1.0):
-            y0, y1 = side * (half - 0.2), side * (half + 0.02)
+            y0, y1 = side * (half - 0.2), side * flank
             inner = np.column_stack([x + rim[:, 0], np.full(_RIM, y0), 0.31 + rim[:, 1]])
             outer = np.column_stack([x + rim[:, 0], np.full(_RIM, y1), 0.31 + rim[:, 1]])
             k, after = np.arange(_RIM), (np.arange(_RIM) + 1) % _RIM
@@ -91,5 +97,5 @@ def _wheels(model: Modeller, half: float, rear: float) -> None:
                 [tread if side < 0 else tread[:, ::-1], disc[:, ::-1] if side > 0 else disc]
             )
             model.mesh(
-                np.concatenate([inner, outer]), faces, RUBBER, Semantic.CAR, np.full(faces.shape, site)
+                np.concatenate([inner, outer]), faces, RUBBER, Semantic.CAR, np.full(faces.shape, site[side])
             )

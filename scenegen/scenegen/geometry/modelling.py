@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float64, Int64
 
-from scenegen.geometry.part import STANDOFF_M, face_normals
+from scenegen.geometry.part import LUMP_STANDOFF_M, STANDOFF_M, face_normals
 from scenegen.geometry.template import Template
 
 
@@ -50,15 +50,20 @@ class Modeller:
         self.mesh(corners.reshape(-1, 3), faces, slot, semantic, corner_site)
 
     def box(
-        self, low: tuple[float, float, float], high: tuple[float, float, float], slot: int, semantic: int
+        self,
+        low: tuple[float, float, float],
+        high: tuple[float, float, float],
+        slot: int,
+        semantic: int,
+        standoff_m: float = STANDOFF_M,
+        covered: bool = False,
     ) -> None:
-        """Add an upright box without underside, one site per side."""
+        """Add an upright box without underside, one site per side; a covered one has no upper side either."""
         (x0, y0, z0), (x1, y1, z1) = low, high
         p = np.array([[x0, y0, z0], [x1, y0, z0], [x1, y1, z0], [x0, y1, z0]], np.float64)
         corners = np.concatenate([p, p + np.array([0, 0, z1 - z0])])
-        self.quads(
-            corners[[[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 5, 6, 7]]], slot, semantic
-        )
+        sides = [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 5, 6, 7]]
+        self.quads(corners[sides[:4] if covered else sides], slot, semantic, standoff_m)
 
     def tube(
         self,
@@ -71,7 +76,7 @@ class Modeller:
         sides: int = 6,
         sites: int = 1,
     ) -> None:
-        """Add a tapered tube without lids; `sites` sites around its middle."""
+        """Add a tapered tube without lids; `sites` lumped sites around its middle."""
         start, end = np.asarray(start, np.float64), np.asarray(end, np.float64)
         axis = (end - start) / np.linalg.norm(end - start)
         helper = np.array([1.0, 0.0, 0.0]) if abs(axis[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
@@ -87,7 +92,7 @@ class Modeller:
         first = len(self._sites)
         for turn in 2 * np.pi * (np.arange(sites) + 0.5) / sites:
             out = np.cos(turn) * u + np.sin(turn) * v
-            self.site(middle + radius * out, out)
+            self.site(middle + radius * out, out, LUMP_STANDOFF_M)
         site = first + (k * sites) // sides
         self.mesh(
             vertices,

@@ -11,6 +11,10 @@ from jaxtyping import Float64, Int64
 STANDOFF_M = 0.005
 """Where exposure rays of an ordinary facet start [m]."""
 
+LUMP_STANDOFF_M = 0.15
+"""The same for a site that stands for a lump (crown, shrub, tube, tyres): thicker than the posts and gaps it must
+not see, less than its height above ground."""
+
 
 @dataclass(frozen=True, eq=False)
 class Part:

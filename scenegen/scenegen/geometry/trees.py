@@ -1,8 +1,7 @@
 """Trees: trunk, branches and a crown of leaf cards around lumpy boughs; broad-leaved and conifer.
 
-A crown has six sites on an ellipsoid around all its leaves. Rays that leave the ellipsoid outwards never
-meet the crown again, so no standoff is needed for leaves, and each leaf card takes the site whose direction
-it lies in.
+A crown has six lumped sites on an ellipsoid around all its leaves: rays that leave the ellipsoid outwards
+never meet the crown again. Each leaf card takes the site whose direction it lies in.
 """
 
 from __future__ import annotations
@@ -11,6 +10,7 @@ import numpy as np
 
 from scenegen.classes import Semantic
 from scenegen.geometry.modelling import Modeller
+from scenegen.geometry.part import LUMP_STANDOFF_M
 from scenegen.geometry.template import Template
 
 BARK, LEAVES = 0, 1
@@ -73,7 +73,9 @@ def grove(rng: np.random.Generator, boughs: int = 6) -> Template:
     ball = _icosahedron()
     directions = _fibonacci(6)[:4] * np.array([1, 1, 0.7])
     centre, radii = np.array([0, 0, 0.4]), np.array([0.6, 0.6, 0.7])
-    first = [model.site(centre + d / np.linalg.norm(d) * radii, d / radii) for d in directions]
+    first = [
+        model.site(centre + d / np.linalg.norm(d) * radii, d / radii, LUMP_STANDOFF_M) for d in directions
+    ]
     spread = np.sqrt(rng.uniform(0.0, 1.0, boughs)) * 0.4
     angle = 2.4 * np.arange(boughs)
     for r, a in zip(spread, angle, strict=True):
@@ -119,7 +121,7 @@ def _crown(
     leaves = np.concatenate([*lumps, corners.reshape(-1, 3)])
     hull = radii * np.linalg.norm((leaves - centre) / radii, axis=1).max() * 1.001
     directions = _fibonacci(6)
-    first = [model.site(centre + d * hull, d / hull) for d in directions]
+    first = [model.site(centre + d * hull, d / hull, LUMP_STANDOFF_M) for d in directions]
 
     def sites_of(points: np.ndarray) -> np.ndarray:
         return np.asarray(first[0] + np.argmax(((points - centre) / radii) @ directions.T, axis=1))
@@ -164,7 +166,7 @@ def shrub(rng: np.random.Generator, cards: int = 14) -> Template:
     centre, radii = np.array([0, 0, 0.5]), np.array([0.62, 0.62, 0.62])
     directions = np.array([[0, -1.0, 0.4], [0, 1.0, 0.4], [0, 0, 1.0]])
     directions /= np.linalg.norm(directions, axis=1)[:, None]
-    first = [model.site(centre + d * radii, d) for d in directions]
+    first = [model.site(centre + d * radii, d, LUMP_STANDOFF_M) for d in directions]
 
     def sites_of(points: np.ndarray) -> np.ndarray:
         return np.asarray(first[0] + np.argmax((points - centre) @ directions.T, axis=1))

@@ -7,7 +7,7 @@ import shapely
 
 from scenegen.classes import Semantic
 from scenegen.geometry.modelling import Modeller
-from scenegen.geometry.part import Part
+from scenegen.geometry.part import LUMP_STANDOFF_M, Part
 from scenegen.geometry.placement import along
 from scenegen.geometry.template import Template, place
 from scenegen.maps.city.park import ParkPlan
@@ -18,7 +18,7 @@ _KERB_M = 0.12
 _FROM_KERB_M = 0.6
 
 
-def _lamp() -> Template:
+def lamp() -> Template:
     """A post of eight metres with an arm over the street (+x)."""
     model = Modeller()
     model.tube(np.array([0, 0, -0.1]), np.array([0, 0, 0.9]), 0.12, 0.11, 0, Semantic.POLE, sides=6, sites=2)
@@ -33,27 +33,29 @@ def _lamp() -> Template:
     return model.finish()
 
 
-def _traffic_light() -> Template:
+def traffic_light() -> Template:
+    """Three lamps in a box at a post of 3.4 metres."""
     model = Modeller()
     model.tube(np.array([0, 0, -0.1]), np.array([0, 0, 3.4]), 0.07, 0.06, 0, Semantic.POLE, sides=6, sites=2)
-    model.box((0.05, -0.16, 2.5), (0.3, 0.16, 3.45), 0, Semantic.TRAFFIC_LIGHT)
+    model.box((0.05, -0.16, 2.5), (0.3, 0.16, 3.45), 0, Semantic.TRAFFIC_LIGHT, LUMP_STANDOFF_M)
     return model.finish()
 
 
-def _sign() -> Template:
+def sign() -> Template:
+    """A plate at a thin post; its back sees past the post."""
     model = Modeller()
     model.tube(np.array([0, 0, -0.1]), np.array([0, 0, 2.7]), 0.035, 0.035, 0, Semantic.POLE, sides=5)
-    model.box((0.035, -0.35, 2.0), (0.06, 0.35, 2.7), 0, Semantic.SIGN)
+    model.box((0.035, -0.35, 2.0), (0.06, 0.35, 2.7), 0, Semantic.SIGN, LUMP_STANDOFF_M)
     return model.finish()
 
 
-def _bench() -> Template:
+def bench() -> Template:
     """Seat and back of wood on iron legs, looking along -y."""
     model = Modeller()
-    model.box((-0.85, -0.25, 0.4), (0.85, 0.2, 0.46), 1, Semantic.STREET_FURNITURE)
+    model.box((-0.85, -0.25, 0.4), (0.85, 0.19, 0.46), 1, Semantic.STREET_FURNITURE)
     model.box((-0.85, 0.2, 0.45), (0.85, 0.26, 0.9), 1, Semantic.STREET_FURNITURE)
     for x in (-0.7, 0.65):
-        model.box((x, -0.22, -0.05), (x + 0.06, 0.2, 0.4), 0, Semantic.STREET_FURNITURE)
+        model.box((x, -0.22, -0.05), (x + 0.06, 0.2, 0.4), 0, Semantic.STREET_FURNITURE, covered=True)
     return model.finish()
 
 
@@ -70,10 +72,10 @@ def build_furniture(
     benches = np.concatenate([np.zeros((0, 3)), *(p.benches for p in parks.values())])
     parts = []
     for template, rows, second in (
-        (_lamp(), lamps, glass),
-        (_traffic_light(), lights, glass),
-        (_sign(), signs, glass),
-        (_bench(), benches, wood),
+        (lamp(), lamps, glass),
+        (traffic_light(), lights, glass),
+        (sign(), signs, glass),
+        (bench(), benches, wood),
     ):
         count = len(rows)
         position = np.column_stack([rows[:, :2], shop.relief(rows[:, :2]) + _KERB_M])

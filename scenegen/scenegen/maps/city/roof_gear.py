@@ -63,18 +63,20 @@ def _vent() -> Template:
 
 def _house() -> Template:
     model = Modeller()
-    model.box((-0.5, -0.5, 0), (0.5, 0.5, 1), 0, Semantic.ROOF_EQUIPMENT)
+    model.box((-0.5, -0.5, 0), (0.5, 0.5, 1), 0, Semantic.ROOF_EQUIPMENT, covered=True)
     model.box((-0.54, -0.54, 1), (0.54, 0.54, 1.06), 1, Semantic.ROOF_EQUIPMENT)
     return model.finish()
 
 
 def _skylight() -> Template:
     model = Modeller()
-    model.box((-0.5, -0.5, 0), (0.5, 0.5, 0.5), 0, Semantic.ROOF_EQUIPMENT)
-    a, b = 0.46, 0.5
+    model.box((-0.5, -0.5, 0), (0.5, 0.5, 0.5), 0, Semantic.ROOF_EQUIPMENT, covered=True)
+    a, b = 0.5, 0.5
     panes = [
         [[-a, -a, b], [a, -a, b], [a, 0, 1], [-a, 0, 1]],
         [[a, a, b], [-a, a, b], [-a, 0, 1], [a, 0, 1]],
+        [[a, -a, b], [a, a, b], [a, 0, 1], [a, 0, 1]],
+        [[-a, a, b], [-a, -a, b], [-a, 0, 1], [-a, 0, 1]],
     ]
     model.quads(np.array(panes, np.float64), 1, Semantic.WINDOW)
     return model.finish()
