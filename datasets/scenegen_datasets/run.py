@@ -9,6 +9,7 @@ from typing import Any
 
 import yaml
 
+from scenegen.foundation.atomic import remove
 from scenegen.foundation.errors import InputError, NoSpaceError, ScenegenError
 from scenegen.foundation.lock import DirectoryLock
 from scenegen.foundation.pool import Done, Event, Failed, Note, Pool, Strike, Task
@@ -20,7 +21,10 @@ from scenegen_datasets.pictures.preview import write_preview
 from scenegen_datasets.recipe import SCENE_SEMANTICS
 from scenegen_datasets.render_job import Job, prepare
 from scenegen_datasets.run_log import RunLog, machine
-from scenegen_datasets.store import clean, create_or_open, finished
+from scenegen_datasets.store import DATASET, MANIFEST, clean, create_or_open, finished
+
+WORKER = "scenegen_datasets.studio:worker"
+"""What a worker process does."""
 
 WORKER_ENVIRONMENT = {
     **dict.fromkeys(
@@ -113,6 +117,9 @@ def run(job: Job, render: Mapping[str, str], told: Told) -> Outcome:
         clean(job.root)
         done = finished(job.root)
         missing = [clip for clip in job.clips if clip.name not in done]
+        if missing:  # until `finish` it grows: what proved the smaller one must not outlive it
+            remove(job.root / DATASET)
+            remove(job.root / MANIFEST)
         with RunLog(job.root) as log:
             log.write(
                 "start",
@@ -148,7 +155,7 @@ def _make(job: Job, missing: Sequence[ClipJob], fingerprint: str, log: RunLog, t
     tasks = [Task(clip.name, f"{clip.map}-{clip.world}", asdict(clip)) for clip in missing]
     count = _Count(missing, len(job.clips))
     with Pool(
-        "scenegen_datasets.studio:worker",
+        WORKER,
         setup,
         job.processes,
         environment=WORKER_ENVIRONMENT,

@@ -3,17 +3,22 @@
 import json
 import os
 import signal
+import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 import small
+import stubborn
 
 from scenegen_cli.main import main
+from scenegen_datasets import run
 from scenegen_datasets.info import info
 from scenegen_datasets.loader import PairDataset
 from scenegen_datasets.verify import verify
+
+HERE = Path(__file__).parent
 
 
 def test_a_dataset_is_made_whole_and_loads(finished_dataset: Path) -> None:
@@ -112,20 +117,26 @@ def test_a_finished_job_run_again_changes_nothing(
     assert small.tree(finished_dataset) == before
 
 
-def test_clips_that_cannot_be_flown_are_put_aside_and_named(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+def test_a_clip_that_cannot_be_made_is_put_aside_and_made_by_a_later_run(
+    finished_dataset: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    hard = ("--flight.max-draws", "1", "--flight.height-m", "3", "8", "--flight.clearance-m", "2.5")
-    assert main(small.render(tmp_path / "tiny", jobs=1, more=hard)) == 3
+    root, clip = tmp_path / "tiny", f"city-00000-{stubborn.REFUSED:03d}"
+    with monkeypatch.context() as patch:
+        patch.setattr(run, "WORKER", "stubborn:worker")
+        patch.setitem(run.WORKER_ENVIRONMENT, "PYTHONPATH", os.pathsep.join([str(HERE), *sys.path]))
+        assert main(small.render(root, jobs=1)) == 3
     captured = capsys.readouterr()
-    missing = info(tmp_path / "tiny").missing
-    assert 1 <= len(missing) <= 3
-    assert f"verified, without {len(missing)} of 4 clips" in captured.out
-    for clip in missing:
-        assert f"put aside: {clip}: no free flight" in captured.err
-    assert len(PairDataset(tmp_path / "tiny")) == 4 * (4 - len(missing))
-    assert main(["status", str(tmp_path / "tiny")]) == 0
-    assert missing[0] in capsys.readouterr().out
+    assert "verified, without 1 of 4 clips" in captured.out
+    assert f"put aside: {clip}: no free flight in this test" in captured.err
+    assert info(root).missing == (clip,)
+    assert len(PairDataset(root)) == 12
+    assert main(["status", str(root)]) == 0
+    assert f"{clip}: no free flight in this test" in capsys.readouterr().out
+    assert main(small.render(root, jobs=1)) == 0
+    assert small.tree(root) == small.tree(finished_dataset)
 
 
 def test_commands_on_a_dataset(
