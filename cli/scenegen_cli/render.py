@@ -19,12 +19,12 @@ from scenegen_datasets.resolve import Source, leaves, merge
 
 @dataclass(frozen=True)
 class Render:
-    """Make a dataset. Run again to resume it where it stopped; raise --pairs (with the same --out) to grow it."""
+    """Make a dataset. Run again to resume it where it stopped; raise --pairs to grow it."""
 
     pairs: int = 0
     """How many pairs; rounded up to whole clips. Must be given."""
     out: Path | None = None
-    """Directory of the dataset; by default MAP-PAIRS here."""
+    """Directory of the dataset; by default scenegen-MAP here."""
     recipe: Path | None = None
     """YAML file of recipe keys; flags win over it."""
     size: str | None = None
@@ -52,7 +52,7 @@ def run(arguments: Sequence[str]) -> int:
     if command.pairs == 0:
         raise InputError("--pairs is missing or 0: say how many pairs to make, such as --pairs 512")
     recipe, pairs = settle_pairs(recipe, command.pairs)
-    out = command.out or Path(f"{'-'.join(recipe.map)}-{command.pairs}")
+    out = command.out or Path("-".join(("scenegen", *recipe.map)))
     job = Job(
         recipe=recipe,
         pairs=pairs,

@@ -58,6 +58,8 @@ def read_mapping(path: Path) -> dict[str, Any]:
             raise InputError(f"{path}: {what}; give the path of a YAML file")
         with path.open("rb") as file:
             content = file.read(MAX_BYTES + 1)
+    except InputError:
+        raise
     except OSError as error:
         raise InputError(f"{path}: cannot be read: {error.strerror}") from None
     except ValueError as error:  # a NUL byte in the path

@@ -131,8 +131,9 @@ def test_unreadable_paths(tmp_path: Path) -> None:
         (tmp_path / "nowhere.yaml", "does not exist"),
         (tmp_path / "pipe", "is no file"),
     ]:
-        with pytest.raises(InputError, match=message):
+        with pytest.raises(InputError, match=message) as raised:
             read_mapping(path)
+        assert str(raised.value).startswith(f"{path}: {message}")
 
 
 def test_reads_a_file(tmp_path: Path) -> None:
