@@ -64,8 +64,9 @@ def graded_points(
         high_x, high_y = min(x1 + outer, far_m - 1.0), min(y1 + outer, far_m - 1.0)
         ring = hexagonal(low_x, low_y, high_x, high_y, spacing, rng)
         ring = ring[np.abs(ring).max(axis=1) < far_m - 0.3 * spacing]
-        distance = shapely.distance(shapely.points(ring), core)
-        bands.append(ring[(distance > inner + 0.3 * spacing) & (distance <= outer)])
+        place = shapely.points(ring)
+        outside = ~shapely.dwithin(core, place, inner + 0.3 * spacing)
+        bands.append(ring[outside & shapely.dwithin(core, place, outer)])
         inner = outer
     return np.concatenate(bands)
 
