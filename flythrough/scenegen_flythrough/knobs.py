@@ -36,7 +36,7 @@ class FlightKnobs(Section):
     turn_radius_m: Annotated[Number, Field(ge=1.0, le=1000.0)] = 8.0
     """Tightest turn [m]; fast flights turn wider, as `bank_deg` allows."""
 
-    bank_deg: Annotated[Number, Field(ge=5.0, le=60.0)] = 35.0
+    bank_deg: Annotated[Number, Field(ge=5.0, le=60.0)] = 25.0
     """Largest tilt of the airframe [deg]; bounds the sideways acceleration."""
 
     climb_deg: Annotated[Number, Field(ge=0.0, le=45.0)] = 15.0
