@@ -73,9 +73,9 @@ class HeightField:
         i, j = row.astype(np.int64), column.astype(np.int64)
         a, b = row - i, column - j
         h = self.height_m.astype(np.float64)
-        return (1 - a) * ((1 - b) * h[i, j] + b * h[i, j + 1]) + a * (
-            (1 - b) * h[i + 1, j] + b * h[i + 1, j + 1]
-        )
+        south = (1 - b) * h[i, j] + b * h[i, j + 1]
+        north = (1 - b) * h[i + 1, j] + b * h[i + 1, j + 1]
+        return np.asarray((1 - a) * south + a * north)
 
 
 @dataclass(frozen=True, eq=False)

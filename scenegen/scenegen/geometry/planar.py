@@ -166,7 +166,7 @@ def _delaunay(points: np.ndarray) -> np.ndarray:
     GEOS answers in coordinates, which are those put in, to the bit: sorting finds their indices. It takes half the
     time of Qhull, and its predicates are exact.
     """
-    rings = shapely.get_coordinates(shapely.delaunay_triangles(shapely.MultiPoint(points)))
+    rings = shapely.get_coordinates(shapely.delaunay_triangles(shapely.linestrings(points)))
     corners = rings.reshape(-1, 4, 2)[:, :3]
     key = np.ascontiguousarray(points, np.float64).view(np.complex128).ravel()
     order = np.argsort(key, kind="stable")
