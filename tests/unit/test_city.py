@@ -155,6 +155,14 @@ def footprint(world, semantics):
     return groups, np.array([shapely.MultiPoint(g[:, :2]).convex_hull for g in groups], dtype=object)
 
 
+def test_undersides_of_roofs_hang_over_the_ground_outside(world):
+    roof = np.unique(world.corner_site[world.face_semantic == Semantic.ROOF])
+    detailed = np.abs(world.sites.position[roof, :2]).max(axis=1) < 330.0
+    below = roof[detailed & (world.sites.normal[roof, 2] < -0.5)]
+    assert len(below) > 100
+    assert (ground_under(world, world.sites.position[below, :2].astype(np.float64)) == 1).all()
+
+
 def test_cars_stand_on_the_ground_and_touch_nothing(world):
     groups, plans = footprint(world, [Semantic.CAR])
     pairs = shapely.STRtree(plans).query(plans, predicate="overlaps")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -18,6 +18,9 @@ from scenegen.maps.city.roofs import flat_outline
 from scenegen.maps.city.styles import Kind, Roof
 
 _EDGE_M = 0.9
+_STACKS_APART_M = 1.5
+_ABOVE_ROOF = 0.75
+"""Height of the sites of a stack's sides, in stack heights: the middle of what stands above the ridge."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,6 +151,9 @@ def _chimneys(buildings: Sequence[Building], rng: np.random.Generator) -> list[P
     """One or two stacks near the ridge of gables and hips."""
     model = Modeller()
     model.box((-0.5, -0.5, 0), (0.5, 0.5, 1), 0, Semantic.CHIMNEY)
+    stack = model.finish()
+    middle = np.where(stack.site_normal[:, 2] < 0.5, _ABOVE_ROOF, 1.0)
+    stack = replace(stack, site_position=np.column_stack([stack.site_position[:, :2], middle]))
     rows, skins, objects = [], [], []
     for building in buildings:
         volume = building.volumes[0]
@@ -159,8 +165,9 @@ def _chimneys(buildings: Sequence[Building], rng: np.random.Generator) -> list[P
         sides = np.sort(np.linalg.norm(np.roll(ring, -1, axis=0) - ring, axis=1))
         ridge = volume.eave_m(building.style) + sides[0] / 2 * building.style.roof_slope
         reach = max(sides[-1] / 2 - sides[0] / 2, 0.4) * 0.8
-        for _ in range(int(rng.integers(1, 3))):
-            xy = ring.mean(axis=0) + along * rng.uniform(-reach, reach)
+        places = rng.uniform(-reach, reach, int(rng.integers(1, 3)))
+        for place_m in places[: 1 + int(np.ptp(places) > _STACKS_APART_M)]:
+            xy = ring.mean(axis=0) + along * place_m
             rows.append([*xy, ridge - 0.9, heading])
             skins.append([building.style.wall])
             objects.append(building.object)
@@ -168,4 +175,4 @@ def _chimneys(buildings: Sequence[Building], rng: np.random.Generator) -> list[P
         return []
     table = np.array(rows)
     scale = np.tile([[0.9, 0.6, 2.1]], (len(table), 1))
-    return [place(model.finish(), table[:, :3], table[:, 3], scale, np.array(skins), np.array(objects))]
+    return [place(stack, table[:, :3], table[:, 3], scale, np.array(skins), np.array(objects))]

@@ -21,6 +21,7 @@ MANSARD_RUN_M = 1.1
 _TUCK_M = 0.02
 _SPACING_M = 2.9
 _EAVES_M, _VERGE_M, _THICKNESS_M = 0.45, 0.3, 0.18
+_BEHIND_M = 0.05
 
 Storeys = Sequence[tuple[Building, Volume]]
 
@@ -125,6 +126,10 @@ def _patched(items: list[tuple[np.ndarray, int, int, int]], spacing_m: float, lu
     return patches(corners, spacing_m, labels[0], labels[1], labels[2], lumped_rows=lumped)
 
 
+def _between(start: tuple[float, float], end: tuple[float, float], share: float) -> tuple[float, float]:
+    return (start[0] + share * (end[0] - start[0]), start[1] + share * (end[1] - start[1]))
+
+
 def _pitched(volume: Volume, building: Building) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Slopes, thin edges and undersides, and gable walls of a rectangular volume."""
     ring = volume.rings[0]
@@ -158,21 +163,34 @@ def _pitched(volume: Volume, building: Building) -> tuple[np.ndarray, np.ndarray
         [at(*e[1], low + t), at(*e[2], low + t), at(*r[1], high + t), at(*r[1], high + t)],
         [at(*e[3], low + t), at(*e[0], low + t), at(*r[0], high + t), at(*r[0], high + t)],
     ]
+    # Undersides end just behind the walls: their sites hang outdoors, not in the attic.
+    share = (wide - b + _BEHIND_M) / wide
+    lip, height = (
+        [_between(e[k], r[j], share) for k, j in enumerate((0, 1, 1, 0))],
+        low + share * (high - low),
+    )
     under = [
-        [at(*e[1], low), at(*e[0], low), at(*r[0], high), at(*r[1], high)],
-        [at(*e[3], low), at(*e[2], low), at(*r[1], high), at(*r[0], high)],
+        [at(*e[k], low), at(*e[j], low), at(*lip[j], height), at(*lip[k], height)]
+        for k, j in ((1, 0), (3, 2))
     ]
     eaves = [[at(*e[k], low), at(*e[k + 1], low), at(*e[k + 1], low + t), at(*e[k], low + t)] for k in (0, 2)]
     if hip:
         under += [
-            [at(*e[2], low), at(*e[1], low), at(*r[1], high), at(*r[1], high)],
-            [at(*e[0], low), at(*e[3], low), at(*r[0], high), at(*r[0], high)],
+            [at(*e[k], low), at(*e[j], low), at(*lip[j], height), at(*lip[k], height)]
+            for k, j in ((2, 1), (0, 3))
         ]
         eaves += [
             [at(*e[k], low), at(*e[(k + 1) % 4], low), at(*e[(k + 1) % 4], low + t), at(*e[k], low + t)]
             for k in (1, 3)
         ]
         return np.array(top + ends), np.array(under + eaves), np.zeros((0, 4, 3))
+    back = a - _BEHIND_M
+    for k, end, x in ((1, r[1], back), (3, r[0], -back)):
+        y = lip[k][1]
+        under.append([at(*end, high), at(*lip[k], height), at(x, y, height), at(x, 0.0, high)])
+    for k, end, x in ((0, r[0], -back), (2, r[1], back)):
+        y = lip[k][1]
+        under.append([at(*lip[k], height), at(*end, high), at(x, 0.0, high), at(x, y, height)])
     verges = []
     for k, j, end in ((1, 2, r[1]), (3, 0, r[0])):
         verges.append([at(*e[k], low), at(*end, high), at(*end, high + t), at(*e[k], low + t)])
