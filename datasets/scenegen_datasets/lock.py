@@ -19,10 +19,7 @@ _PACKAGES = {
     "OpenEXR": "OpenEXR",
     "scipy": "scipy",
     "pvlib": "pvlib",
-    "trimesh": "trimesh",
     "shapely": "shapely",
-    "manifold3d": "manifold3d",
-    "earcut": "mapbox-earcut",
 }
 """What takes part in making bytes, besides the renderer: arrays, codecs, sun, geometry."""
 

@@ -66,13 +66,6 @@ class FlightKnobs(Section):
             raise ValueError(f"the camera's angle must lie in -90 (down) to 30 deg, not {_text(value)}")
         return value
 
-    @field_validator("speed_mps", "height_m", "pitch_deg")
-    @classmethod
-    def _ordered(cls, value: tuple[float, float]) -> tuple[float, float]:
-        if value[0] > value[1]:
-            raise ValueError(f"the range {_text(value)} is upside down; write the smaller number first")
-        return value
-
     @model_validator(mode="after")
     def _room_above_ground(self) -> FlightKnobs:
         if self.clearance_m >= self.height_m[0]:
