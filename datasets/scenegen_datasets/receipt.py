@@ -10,7 +10,7 @@ from typing import Any
 
 from scenegen.foundation.errors import DatasetError
 from scenegen_datasets.clip import ClipRecord
-from scenegen_datasets.job import SPLITS, ClipJob
+from scenegen_datasets.job import SPLITS
 from scenegen_datasets.layers import LAYERS, MEMBERS, max_member_bytes
 from scenegen_datasets.seal import read_bounded, sealed, sealed_body, unsealed
 
@@ -210,8 +210,3 @@ def receipt_paths(root: Path) -> list[str]:
                         if f.suffix == ".json"
                     ]
     return sorted(p for p in found if not Path(p).name.startswith("."))
-
-
-def job_order(receipt: Receipt) -> ClipJob:
-    """Sort key: receipts in plan order."""
-    return receipt.clip.job

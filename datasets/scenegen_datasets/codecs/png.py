@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenegen.foundation.errors import CorruptFrameError
+from scenegen_datasets.codecs.raster import decoded
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
 _HEADER = struct.Struct(">IIBBBBB")
@@ -37,16 +38,8 @@ def decode(data: bytes, shape: tuple[int, int]) -> NDArray[np.uint16]:
     CorruptFrameError
         If it is not a 16-bit grey PNG of `shape`, made of nothing but header, pixels and end.
     """
-    import cv2
-
     _check(data, shape)
-    try:
-        image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
-    except cv2.error:
-        image = None
-    if image is None or image.dtype != np.uint16 or image.shape != shape:
-        raise CorruptFrameError("PNG does not decode")
-    return np.asarray(image)
+    return decoded(data, shape, np.uint16, "PNG")
 
 
 def _check(data: bytes, shape: tuple[int, int]) -> None:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenegen.foundation.errors import CorruptFrameError
+from scenegen_datasets.codecs.raster import decoded
 
 _LZW, _FLOAT_PREDICTOR = 5, 3
 _ENTRY = struct.Struct("<HHII")
@@ -45,16 +46,8 @@ def decode(data: bytes, shape: tuple[int, int]) -> NDArray[np.float32]:
     CorruptFrameError
         If it is not such a TIFF of `shape`.
     """
-    import cv2
-
     _check(data, shape)
-    try:
-        image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
-    except cv2.error:
-        image = None
-    if image is None or image.dtype != np.float32 or image.shape != shape:
-        raise CorruptFrameError("TIFF does not decode")
-    return np.asarray(image)
+    return decoded(data, shape, np.float32, "TIFF")
 
 
 def _check(data: bytes, shape: tuple[int, int]) -> None:

@@ -33,10 +33,6 @@ class DevicePose:
         a, b, c = self.column
         return dr.fma(a, x, dr.fma(b, y, c * z))
 
-    def move(self, point: Any) -> Any:
-        """Rotate and translate a point."""
-        return self.turn(point.x, point.y, point.z) + self.translation
-
 
 def device_pose(matrix: Pose, double: bool = False) -> DevicePose:
     """Upload a 4x4 transform, in float32 or float64."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float64, Int64
@@ -47,18 +47,6 @@ class Part:
     site_position: Float64[np.ndarray, "sites 3"]
     site_normal: Float64[np.ndarray, "sites 3"]
     site_standoff: Float64[np.ndarray, "sites"]
-
-    def labelled(
-        self, surface: int | None = None, semantic: int | None = None, object: int | None = None
-    ) -> Part:
-        """The same geometry with one surface, class or instance for all faces."""
-        count = len(self.faces)
-        return replace(
-            self,
-            surface=self.surface if surface is None else np.full(count, int(surface)),
-            semantic=self.semantic if semantic is None else np.full(count, int(semantic)),
-            object=self.object if object is None else np.full(count, int(object)),
-        )
 
 
 def concatenate(parts: Sequence[Part]) -> Part:
