@@ -101,7 +101,7 @@ def main() -> None:
     for index in range(asked.worlds):
         stages = Stages()
         rng = stream(0, "benchmark", "world", index)
-        world = stages("build", lambda g=rng: build_world("city", map_family("city").knobs(), g))
+        world = stages("build", lambda g=rng: build_world("city", map_family("city").knobs(), SEASON, g))
         loaded = stages("load", lambda w=world: load(w))
         exposure = stages(
             "expose", lambda k=loaded, i=index: expose(k, SEASON, stream(0, "exposure", i), knobs)

@@ -31,6 +31,7 @@ from scenegen_render.scene import LoadedWorld, load
 BAND_UM = (8.0, 14.0)
 SIZES = ((256, 256), (640, 512))
 HFOV_DEG = 90.0
+SEASON = Season(40.0, 7, 15)
 _AFTERNOON = Weather(294.0, 7.0, 15.0, 284.0, 3.0, cloud_fraction=0.3, linke_turbidity=3.0)
 
 
@@ -56,9 +57,9 @@ class Place:
 
 def city() -> Place:
     """World 0 of the city map on a July afternoon, twelve poses from four default flights."""
-    world = build_world("city", map_family("city").knobs(), stream(0, "benchmark", "world"))
+    world = build_world("city", map_family("city").knobs(), SEASON, stream(0, "benchmark", "world"))
     loaded, airspace = load(world), Airspace(world)
-    exposure = expose(loaded, Season(40.0, 7, 15), stream(0, "benchmark", "exposure"))
+    exposure = expose(loaded, SEASON, stream(0, "benchmark", "exposure"))
     state = HeatModel.of(world, exposure).solve(_AFTERNOON, 15.0)
     flights = [
         fly(world, FlightKnobs(), 16, stream(0, "benchmark", "flight", k), airspace).world_from_camera

@@ -47,12 +47,12 @@ def set_stage(recipe: Recipe, map: str, index: int, watch: Stopwatch) -> Stage:
 
     Season, geometry and exposure draw from generators of their own, so that changing one leaves the others alone.
     """
+    season = draw_season(recipe.climate, stream(recipe.seed, map, index, "season"))
     with watch("build"):
-        world = build_world(map, recipe.map_knobs(map), stream(recipe.seed, map, index, "world"))
+        world = build_world(map, recipe.map_knobs(map), season, stream(recipe.seed, map, index, "world"))
     with watch("load"):
         loaded = load(world)
     with watch("expose"):
-        season = draw_season(recipe.climate, stream(recipe.seed, map, index, "season"))
         exposure = expose(loaded, season, stream(recipe.seed, map, index, "exposure"), recipe.exposure)
     with watch("heat classes"):
         heat = HeatModel.of(world, exposure)

@@ -37,7 +37,7 @@ class Scene:
 
     def __init__(self) -> None:
         knobs = CityKnobs(extent_m=(400.0, 400.0))
-        self.world: World = build_world("city", knobs, stream(3, "city"))
+        self.world: World = build_world("city", knobs, JULY, stream(3, "city"))
         loaded = load(self.world)
         self.exposure: Exposure = expose(loaded, JULY, stream(3, "exposure"), ExposureKnobs(directions=32))
         loaded.release()

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from scenegen.classes import Semantic
+from scenegen.climate.season import Season
 from scenegen.foundation.rng import stream
 from scenegen.maps.registry import build_world, map_family
 from scenegen.world import World
@@ -15,6 +16,8 @@ from scenegen_flythrough.knobs import FlightKnobs
 from scenegen_flythrough.trajectory import Trajectory
 from scenegen_render import backend
 from scenegen_render.scene import LoadedWorld, load
+
+SEASON = Season(40.0, 7, 15)
 
 FLIGHTS = 12
 WISHES = (
@@ -29,7 +32,7 @@ THIN = (Semantic.TREE, Semantic.SHRUB, Semantic.CAR)
 @pytest.fixture(scope="module")
 def town() -> World:
     knobs = map_family("city").knobs.model_validate({"extent_m": 400.0})
-    return build_world("city", knobs, stream(4, "town"))
+    return build_world("city", knobs, SEASON, stream(4, "town"))
 
 
 @pytest.fixture(scope="module")

@@ -9,11 +9,14 @@ import pytest
 import shapely
 
 from scenegen.classes import Semantic
+from scenegen.climate.season import Season
 from scenegen.foundation.errors import InputError
 from scenegen.foundation.rng import stream
 from scenegen.geometry.part import face_areas, face_normals
 from scenegen.maps.city.knobs import CityKnobs
 from scenegen.maps.registry import MAPS, build_world, map_family
+
+SEASON = Season(40.0, 7, 15)
 
 SEEDS = (0, 1, 2)
 GROUND = [
@@ -23,7 +26,7 @@ GROUND = [
 
 @cache
 def build(seed):
-    return build_world("city", CityKnobs(), stream(seed, "city"))
+    return build_world("city", CityKnobs(), SEASON, stream(seed, "city"))
 
 
 @pytest.fixture(scope="module", params=SEEDS)
@@ -224,7 +227,7 @@ def test_knobs_are_honoured():
         relief_m=0.0,
         flight_ceiling_m=80,
     )
-    world = build_world("city", knobs, stream(0, "city"))
+    world = build_world("city", knobs, SEASON, stream(0, "city"))
     assert dict(world.counts)["cars"] < 0.4 * dict(build(0).counts)["cars"]
     assert world.flight_box_m[1][0] < 250.0
     assert world.flight_box_m[1][2] == 80.0

@@ -6,7 +6,7 @@ gap is closed by vertical quads between duplicated vertices.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,11 +16,10 @@ from jaxtyping import Bool, Float64, Int64
 from scenegen.geometry.part import STANDOFF_M, Part, concatenate, face_normals
 from scenegen.geometry.patch import quads_to_triangles
 from scenegen.geometry.planar import Triangulation
+from scenegen.geometry.relief import Relief
 
 _NUDGE_M = 0.04
 """How far sites on a region's outline move inwards, to lie clear of the plane of a wall or kerb [m]."""
-
-Relief = Callable[[Float64[np.ndarray, "points 2"]], Float64[np.ndarray, "points"]]
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from jaxtyping import Float64
 
 from scenegen.world import HeightField
+
+Relief = Callable[[Float64[np.ndarray, "points 2"]], Float64[np.ndarray, "points"]]
+"""Height of the terrain [m] at plan points."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,3 +64,10 @@ def sample_height_field(relief: WaveRelief, half_m: float, cell_m: float) -> Hei
     east, north = np.meshgrid(axis, axis)
     height = relief(np.column_stack([east.ravel(), north.ravel()])).reshape(count, count)
     return HeightField((-half_m, -half_m), 2 * half_m / (count - 1), height.astype(np.float32))
+
+
+def slopes(relief: Relief, xy: Float64[np.ndarray, "points 2"]) -> Float64[np.ndarray, "points 2"]:
+    """Rise of the ground per metre east and north."""
+    step = 0.5
+    east, north = np.array([step, 0.0]), np.array([0.0, step])
+    return np.column_stack([relief(xy + d) - relief(xy - d) for d in (east, north)]) / (2 * step)

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from scenegen.climate.season import Season
 from scenegen.foundation.errors import InputError, nearest
 from scenegen.foundation.section import Section
 from scenegen.maps.city.city import build_city
@@ -29,13 +30,13 @@ class MapFamily:
     knobs : type of Section
         What can be turned.
     build : callable
-        Knobs and generator to world.
+        Knobs, season and generator to world.
     """
 
     name: str
     description: str
     knobs: type[Section]
-    build: Callable[[Any, np.random.Generator], World]
+    build: Callable[[Any, Season, np.random.Generator], World]
 
 
 _FAMILIES = (
@@ -62,7 +63,7 @@ def map_family(name: str) -> MapFamily:
         raise InputError(f"unknown map '{name}'{nearest(name, MAPS)}") from None
 
 
-def build_world(map: str, knobs: Section, rng: np.random.Generator) -> World:
+def build_world(map: str, knobs: Section, season: Season, rng: np.random.Generator) -> World:
     """Build a world.
 
     Parameters
@@ -71,8 +72,10 @@ def build_world(map: str, knobs: Section, rng: np.random.Generator) -> World:
         Name of the family.
     knobs : Section
         Of the family's own class.
+    season : Season
+        Decides what is in leaf; the sun comes later.
     rng : numpy.random.Generator
-        The world is a pure function of map, knobs and the state of this generator.
+        The world is a pure function of map, knobs, season and the state of this generator.
 
     Raises
     ------
@@ -82,4 +85,4 @@ def build_world(map: str, knobs: Section, rng: np.random.Generator) -> World:
     family = map_family(map)
     if not isinstance(knobs, family.knobs):
         raise InputError(f"map '{map}' takes {family.knobs.__name__}, not {type(knobs).__name__}")
-    return family.build(knobs, rng)
+    return family.build(knobs, season, rng)

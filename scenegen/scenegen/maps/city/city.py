@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
+from scenegen.buildings.roof_gear import draw_roof_gear
+from scenegen.buildings.shells import build_shells
+from scenegen.climate.season import Season
 from scenegen.geometry.builder import GeometryBuilder
 from scenegen.geometry.relief import draw_relief, sample_height_field
 from scenegen.maps.city.districts import lay_out
@@ -13,25 +16,25 @@ from scenegen.maps.city.greenery import build_greenery
 from scenegen.maps.city.knobs import CityKnobs
 from scenegen.maps.city.outskirts import far_objects
 from scenegen.maps.city.park import plan_park
-from scenegen.maps.city.roof_gear import draw_roof_gear
-from scenegen.maps.city.shells import build_shells
 from scenegen.maps.city.streets import draw_streets
 from scenegen.maps.city.terrain import build_terrain
 from scenegen.maps.city.traffic import build_traffic
 from scenegen.maps.city.uses import Use
-from scenegen.maps.city.workshop import Workshop
+from scenegen.maps.city.workshop import CityWorkshop
 from scenegen.materials.palette import PaletteBuilder
 from scenegen.world import World
 
 _MARGIN_M = 12.0
 
 
-def build_city(knobs: CityKnobs, rng: np.random.Generator) -> World:
+def build_city(knobs: CityKnobs, season: Season, rng: np.random.Generator) -> World:
     """Build one city.
 
     Parameters
     ----------
     knobs : CityKnobs
+    season : Season
+        Decides what is in leaf.
     rng : numpy.random.Generator
         The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
     """
@@ -43,7 +46,7 @@ def build_city(knobs: CityKnobs, rng: np.random.Generator) -> World:
     palette.variants("asphalt_aged", 3)  # the fourth is its paint
     plan = draw_streets(extent, knobs.block_area_m2, own.uniform(*knobs.street_bend_m), streets)
     relief = draw_relief(hills, hills.uniform(*knobs.relief_m), (280.0, 900.0))
-    shop = Workshop(knobs, relief, palette, builder)
+    shop = CityWorkshop(relief, palette, builder, season, knobs)
     layout = lay_out(plan, shop, lots)
     parks = {k: plan_park(b.yard, parks_rng) for k, b in enumerate(layout.blocks) if b.use is Use.PARK}
     gear = draw_roof_gear(layout.buildings, gear_rng)

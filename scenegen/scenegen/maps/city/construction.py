@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from scenegen.maps.city.buildings import Building, Volume, Wish, fit_footprint, outline_of, rings_of
-from scenegen.maps.city.lots import Lot
-from scenegen.maps.city.styles import Kind, Roof, draw_style
+from scenegen.buildings.building import Building, Volume, Wish, fit_footprint, outline_of, rings_of
+from scenegen.buildings.lots import Lot
+from scenegen.buildings.styles import Kind, Roof, draw_style
 from scenegen.maps.city.uses import Use
-from scenegen.maps.city.workshop import Workshop
+from scenegen.maps.city.workshop import CityWorkshop
 
 _BELOW_GROUND_M = 0.8
 _KERB_AND_STEP_M = 0.18
@@ -31,17 +31,17 @@ class Constructor:
 
     Attributes
     ----------
-    shop : Workshop
+    shop : CityWorkshop
     tower_share, terrace_storeys : float
         Of this world: share of towers on estates; mean storeys of perimeter blocks.
     """
 
-    shop: Workshop
+    shop: CityWorkshop
     tower_share: float
     terrace_storeys: float
 
     @staticmethod
-    def draw(shop: Workshop, rng: np.random.Generator) -> Constructor:
+    def draw(shop: CityWorkshop, rng: np.random.Generator) -> Constructor:
         """Draw the world's own values from the knobs."""
         low, high = shop.knobs.storeys
         return Constructor(shop, rng.uniform(*shop.knobs.tower_share), rng.uniform(0.5 * (low + high), high))

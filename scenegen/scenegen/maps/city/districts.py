@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from scenegen.maps.city.buildings import Building
+from scenegen.buildings.building import Building
+from scenegen.buildings.lots import Lot, divide_lots, perimeter_sectors, row_lots
 from scenegen.maps.city.construction import Constructor
-from scenegen.maps.city.lots import Lot, divide_lots, perimeter_sectors, row_lots
 from scenegen.maps.city.streets import StreetPlan
 from scenegen.maps.city.uses import LOT_AREA_M2, Use, assign_uses
-from scenegen.maps.city.workshop import Workshop
+from scenegen.maps.city.workshop import CityWorkshop
 
 _CAR_PARK_SHARE = {Use.ESTATE: 0.6, Use.OFFICES: 0.6, Use.INDUSTRY: 1.0}
 
@@ -52,7 +52,7 @@ class Layout:
 
 def lay_out(
     plan: StreetPlan,
-    shop: Workshop,
+    shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> Layout:
     """Give each block a use and put buildings on it."""

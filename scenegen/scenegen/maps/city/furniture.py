@@ -12,7 +12,7 @@ from scenegen.geometry.placement import along
 from scenegen.geometry.template import Template, place
 from scenegen.maps.city.park import ParkPlan
 from scenegen.maps.city.streets import Rank, StreetPlan
-from scenegen.maps.city.workshop import Workshop
+from scenegen.maps.city.workshop import CityWorkshop
 
 _KERB_M = 0.12
 _FROM_KERB_M = 0.6
@@ -62,7 +62,7 @@ def bench() -> Template:
 def build_furniture(
     plan: StreetPlan,
     parks: dict[int, ParkPlan],
-    shop: Workshop,
+    shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> tuple[list[Part], np.ndarray]:
     """All street furniture and the places of the posts (for trees to keep clear of)."""

@@ -12,7 +12,7 @@ from scenegen.geometry.trees import broadleaf, conifer, shrub
 from scenegen.maps.city.districts import Layout
 from scenegen.maps.city.park import ParkPlan
 from scenegen.maps.city.uses import Use
-from scenegen.maps.city.workshop import Workshop
+from scenegen.maps.city.workshop import CityWorkshop
 
 _KERB_M = 0.12
 _BROADLEAVED, _CONIFERS = 5, 2
@@ -23,7 +23,7 @@ def build_greenery(
     layout: Layout,
     parks: dict[int, ParkPlan],
     posts: np.ndarray,
-    shop: Workshop,
+    shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> tuple[list[Part], int]:
     """Trees and shrubs as parts (one per template), and the number of trees.
@@ -34,7 +34,7 @@ def build_greenery(
         What the plan holds; parks by block index.
     posts : float64 (posts, 2)
         Lamps and signs that crowns keep clear of.
-    shop : Workshop
+    shop : CityWorkshop
     rng : numpy.random.Generator
     """
     xy, height = _tree_spots(layout, parks, shop, rng)
@@ -55,7 +55,7 @@ def build_greenery(
 def _trees(
     xy: np.ndarray,
     height: np.ndarray,
-    shop: Workshop,
+    shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> list[Part]:
     count = len(xy)
@@ -98,7 +98,7 @@ def _free(xy: np.ndarray, radius: np.ndarray, layout: Layout, posts: np.ndarray)
 
 
 def _tree_spots(
-    layout: Layout, parks: dict[int, ParkPlan], shop: Workshop, rng: np.random.Generator
+    layout: Layout, parks: dict[int, ParkPlan], shop: CityWorkshop, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray]:
     """Candidate places and heights."""
     yard_rate = rng.uniform(*shop.knobs.yard_trees_per_1000_m2)

@@ -15,7 +15,7 @@ from scenegen.geometry.placement import clear_of, first_come, rectangles
 from scenegen.geometry.template import place
 from scenegen.geometry.trees import grove
 from scenegen.maps.city.streets import StreetPlan
-from scenegen.maps.city.workshop import Workshop
+from scenegen.maps.city.workshop import CityWorkshop
 
 FAR_M = 2600.0
 _ROAD_HALF_M = 5.0
@@ -33,7 +33,7 @@ def road_lines(plan: StreetPlan) -> np.ndarray:
     return np.array(lines, dtype=object)
 
 
-def far_regions(plan: StreetPlan, shop: Workshop, rng: np.random.Generator) -> list[Region]:
+def far_regions(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) -> list[Region]:
     """Land around the city; the first region covers everything."""
     land, fields, road = shop.builder.new_objects(), shop.builder.new_objects(), shop.builder.new_objects()
     edge = shapely.box(-FAR_M, -FAR_M, FAR_M, FAR_M)
@@ -61,7 +61,7 @@ def far_regions(plan: StreetPlan, shop: Workshop, rng: np.random.Generator) -> l
 
 def far_objects(
     plan: StreetPlan,
-    shop: Workshop,
+    shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> list[Part]:
     """Plain buildings and groves, denser towards the city; they thin out with distance."""
@@ -95,7 +95,7 @@ def _plain_buildings(
     centre: np.ndarray,
     size: np.ndarray,
     heading: np.ndarray,
-    shop: Workshop,
+    shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> Part:
     names = ("stucco_render", "brick_red", "concrete_wall", "concrete_wall")
@@ -124,7 +124,7 @@ def _plain_buildings(
 def _groves(
     centre: np.ndarray,
     size: np.ndarray,
-    shop: Workshop,
+    shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> Part:
     skin = np.array([[shop.palette.pick("tree_crown", rng)] for _ in range(len(centre))], np.int64).reshape(

@@ -9,7 +9,7 @@ import shapely
 
 from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region
-from scenegen.maps.city.workshop import Workshop
+from scenegen.maps.city.workshop import CityWorkshop
 
 _KERB_M = 0.12
 _PATH_HALF_M = 1.3
@@ -138,7 +138,7 @@ def _benches(lines: list[np.ndarray], yard: shapely.Polygon, rng: np.random.Gene
 
 def park_regions(
     park: ParkPlan,
-    shop: Workshop,
+    shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> list[Region]:
     """Ground of a park on top of its lawn."""

@@ -16,7 +16,7 @@ from scenegen.maps.city.outskirts import FAR_M, far_regions
 from scenegen.maps.city.park import ParkPlan, park_regions
 from scenegen.maps.city.streets import StreetPlan
 from scenegen.maps.city.uses import Use
-from scenegen.maps.city.workshop import Workshop
+from scenegen.maps.city.workshop import CityWorkshop
 
 KERB_M = 0.12
 _GROUND_POINTS, _POINTS_PER_BUILDING = 81_000, 70
@@ -28,7 +28,7 @@ def build_terrain(
     plan: StreetPlan,
     layout: Layout,
     parks: dict[int, ParkPlan],
-    shop: Workshop,
+    shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> Part:
     """All ground, from the middle of the city to the far edge.
@@ -37,7 +37,7 @@ def build_terrain(
     ----------
     plan, layout, parks
         What was drawn so far; parks by block index.
-    shop : Workshop
+    shop : CityWorkshop
     rng : numpy.random.Generator
     """
     dry_share = rng.uniform(*shop.knobs.dry_lawn_share)
@@ -70,7 +70,7 @@ def _ground_spacing(open_m2: float, buildings: int) -> float:
     return float(np.sqrt(2 / np.sqrt(3) * open_m2 / points))
 
 
-def _streets(plan: StreetPlan, shop: Workshop, rng: np.random.Generator) -> list[Region]:
+def _streets(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) -> list[Region]:
     road = shop.builder.new_objects()
     paint = shop.palette.special("asphalt_aged", "paint", solar_absorptance=0.55)
     marking = shop.builder.new_objects()
@@ -79,7 +79,9 @@ def _streets(plan: StreetPlan, shop: Workshop, rng: np.random.Generator) -> list
     return regions + [Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True) for q in quads]
 
 
-def _block_regions(block: Block, dry_share: float, shop: Workshop, rng: np.random.Generator) -> list[Region]:
+def _block_regions(
+    block: Block, dry_share: float, shop: CityWorkshop, rng: np.random.Generator
+) -> list[Region]:
     pavement = shop.palette.pick("concrete_pavement", rng)
     regions = [Region(block.outline, pavement, int(Semantic.SIDEWALK), shop.builder.new_objects(), KERB_M)]
     lawn = shop.palette.pick("grass_dry" if rng.uniform() < dry_share else "grass_watered", rng)
@@ -113,7 +115,7 @@ def _block_regions(block: Block, dry_share: float, shop: Workshop, rng: np.rando
     return regions
 
 
-def _paths(layout: Layout, shop: Workshop, rng: np.random.Generator) -> list[Region]:
+def _paths(layout: Layout, shop: CityWorkshop, rng: np.random.Generator) -> list[Region]:
     """Paved paths from the sidewalk to the doors of detached buildings on lawns."""
     pavement = shop.palette.pick("concrete_pavement", rng)
     first = shop.builder.new_objects()

@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 import shapely
 
+from scenegen.buildings.lots import Lot
 from scenegen.geometry.cars import BODIES, LENGTH_M, WIDTH_M, car
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along, clear_of, first_come, rectangles
-from scenegen.geometry.relief import WaveRelief
+from scenegen.geometry.relief import slopes
 from scenegen.geometry.template import place
 from scenegen.maps.city.districts import Layout
 from scenegen.maps.city.knobs import CityKnobs
-from scenegen.maps.city.lots import Lot
 from scenegen.maps.city.streets import Rank, StreetPlan
-from scenegen.maps.city.workshop import Workshop
+from scenegen.maps.city.workshop import CityWorkshop
 
 _PAINTS = ("car_paint_black", "car_paint_white", "car_paint_silver", "car_paint_silver")
 _KERB_M = 0.12
@@ -28,7 +28,7 @@ _DRIVING = {Rank.ARTERIAL: (1.75, 5.3), Rank.COLLECTOR: (1.75,), Rank.SIDE: (1.3
 def build_traffic(
     plan: StreetPlan,
     layout: Layout,
-    shop: Workshop,
+    shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> tuple[list[Part], int]:
     """Cars as parts, one per body style, and their number."""
@@ -50,13 +50,6 @@ def build_traffic(
             place(car(name), position[mine], spots[mine, 2], scale, skins[mine], first + mine, slope[mine])
         )
     return parts, count
-
-
-def slopes(relief: WaveRelief, xy: np.ndarray) -> np.ndarray:
-    """Rise of the ground per metre east and north."""
-    step = 0.5
-    east, north = np.array([step, 0.0]), np.array([0.0, step])
-    return np.column_stack([relief(xy + d) - relief(xy - d) for d in (east, north)]) / (2 * step)
 
 
 def _spots(

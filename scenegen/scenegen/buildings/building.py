@@ -8,9 +8,9 @@ import numpy as np
 import shapely
 from jaxtyping import Float64
 
-from scenegen.maps.city.footprints import draw_rings, polygon_of, rectangle_ring
-from scenegen.maps.city.lots import Lot
-from scenegen.maps.city.styles import Kind, Roof, Style
+from scenegen.buildings.footprints import draw_rings, polygon_of, rectangle_ring
+from scenegen.buildings.lots import Lot
+from scenegen.buildings.styles import Kind, Roof, Style
 
 
 @dataclass(frozen=True, eq=False)

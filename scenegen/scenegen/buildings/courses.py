@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from scenegen.buildings.building import Building, Volume
+from scenegen.buildings.styles import Kind, Roof
 from scenegen.geometry.facade import BLANK, DOOR, WINDOW, Walls
-from scenegen.maps.city.buildings import Building, Volume
-from scenegen.maps.city.styles import Kind, Roof
 
 _SHORT_WALL_M = 2.2
 _PARTY_PROBE_M = 0.35

@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from scenegen.buildings.building import Building
 from scenegen.classes import Semantic
 from scenegen.geometry.facade import WINDOW, Walls
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import Part
 from scenegen.geometry.template import Template, place
-from scenegen.maps.city.buildings import Building
 
 _DEPTH_M, _RAIL_M, _SLAB_M, _THICK_M = 1.15, 1.0, 0.14, 0.06
 

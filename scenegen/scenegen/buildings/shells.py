@@ -7,16 +7,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from scenegen.buildings.balconies import build_balconies
+from scenegen.buildings.building import Building
+from scenegen.buildings.courses import wall_table
+from scenegen.buildings.roofs import PARAPET_WIDTH_M, Storeys, flat_roofs, sloped_roofs
+from scenegen.buildings.styles import Roof
 from scenegen.classes import Semantic
 from scenegen.geometry.facade import facades
 from scenegen.geometry.part import Part, concatenate
 from scenegen.geometry.patch import patches
 from scenegen.geometry.rings import inset, strip
-from scenegen.maps.city.balconies import build_balconies
-from scenegen.maps.city.buildings import Building
-from scenegen.maps.city.courses import wall_table
-from scenegen.maps.city.roofs import PARAPET_WIDTH_M, Storeys, flat_roofs, sloped_roofs
-from scenegen.maps.city.styles import Roof
 
 _BLANK_SPACING_M = 4.0
 _BAND_M = 0.14

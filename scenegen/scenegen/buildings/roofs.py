@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
+from scenegen.buildings.building import Building, Volume
+from scenegen.buildings.styles import Roof
 from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region, drape
 from scenegen.geometry.part import Part, concatenate
 from scenegen.geometry.patch import patches
 from scenegen.geometry.planar import triangulate
 from scenegen.geometry.rings import inset, strip
-from scenegen.maps.city.buildings import Building, Volume
-from scenegen.maps.city.styles import Roof
 
 PARAPET_WIDTH_M = 0.28
 MANSARD_RUN_M = 1.1

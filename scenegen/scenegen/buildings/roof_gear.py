@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
+from scenegen.buildings.building import Building
+from scenegen.buildings.roofs import flat_outline
+from scenegen.buildings.styles import Kind, Roof
 from scenegen.classes import Semantic
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import first_come, rectangles
 from scenegen.geometry.template import Template, place
-from scenegen.maps.city.buildings import Building
-from scenegen.maps.city.roofs import flat_outline
-from scenegen.maps.city.styles import Kind, Roof
 
 _EDGE_M = 0.9
 _STACKS_APART_M = 1.5

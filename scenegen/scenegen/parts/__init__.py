@@ -1,0 +1,1 @@
+"""Parts that maps share: plants, vehicles, people, boats, fixtures."""
