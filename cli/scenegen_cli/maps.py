@@ -1,16 +1,94 @@
-"""``scenegen maps``: the kinds of worlds."""
+"""``scenegen maps``: the kinds of worlds, their knobs, and a look at one of them."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
 
-from scenegen_cli.listing import show
+import tyro
+
+from scenegen.foundation.errors import InputError
+from scenegen_cli.console import say, say_json, table
+from scenegen_cli.parse import HelpShown, parse, split_recipe_flags
+from scenegen_datasets.recipe import Recipe
+from scenegen_datasets.resolve import leaves
+
+
+@dataclass(frozen=True)
+class Maps:
+    """List the maps, the knobs of one, or look at one of its worlds. Takes all recipe keys as flags, such as --seed."""
+
+    map: Annotated[str, tyro.conf.Positional] = ""
+    """Name of a map; without it, all are listed."""
+    world: int = 0
+    """Which of the map's worlds."""
+    recipe: Path | None = None
+    """YAML file of recipe keys; flags win over it."""
+    preview: Path | None = None
+    """Draw the world into this PNG file: from above, from the air, and as a drone sees it."""
+    json: bool = False
+    """Report as JSON."""
 
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    return show("maps", arguments, _rows, ("name", "description"))
+    try:
+        own, flags = split_recipe_flags(arguments, [key for key, _, _ in leaves(Recipe)])
+        command = parse(Maps, "maps", own)
+    except HelpShown:
+        return 0
+    looks = command.preview is not None
+    if not command.map:
+        if looks:
+            raise InputError("name the map to look at, such as 'scenegen maps city --preview city.png'")
+        return _list_maps(command)
+    if looks:
+        from scenegen_cli.look import look
+
+        return look(command, flags)
+    return _list_knobs(command)
+
+
+def _list_maps(command: Maps) -> int:
+    rows = _rows()
+    if command.json:
+        say_json(rows)
+        return 0
+    say(
+        table(
+            [
+                ("name", "knobs", "description"),
+                *((r["name"], str(len(r["keys"])), r["description"]) for r in rows),
+            ]
+        )
+    )
+    return 0
+
+
+def _list_knobs(command: Maps) -> int:
+    from scenegen.maps.registry import map_family
+
+    family = map_family(command.map)
+    keys = [(f"{family.name}.{key}", default, meaning) for key, meaning, default in leaves(family.knobs)]
+    if command.json:
+        say_json([{"key": key, "default": default, "meaning": meaning} for key, default, meaning in keys])
+        return 0
+    say(f"{family.name}: {family.description}\n")
+    say(
+        table(
+            [
+                ("key", "default", "meaning"),
+                *((key, _text(default), meaning) for key, default, meaning in keys),
+            ]
+        )
+    )
+    return 0
+
+
+def _text(value: Any) -> str:
+    return " ".join(f"{v:g}" for v in value) if isinstance(value, tuple) else str(value)
 
 
 def _rows() -> list[dict[str, Any]]:
