@@ -177,7 +177,7 @@ def _conduction(
         built = construction(surface)
         Y[i], transfer = admittance(built.stack, omega)
         space = np.full(samples, built.inner_K) if math.isfinite(built.inner_K) else day.air.temperature_K
-        inner[i] = np.fft.irfft(transfer * np.fft.rfft(space), n=samples)
+        inner[i] = np.fft.irfft(transfer * np.fft.rfft(space), n=samples) + built.arriving_Wm2
     return Y[entry], inner[entry]
 
 

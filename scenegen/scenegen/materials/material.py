@@ -108,6 +108,8 @@ class Surface:
         Temperature behind the layers [K] (heated room, engine bay); NaN where the build has no inner side.
     prescribed_K : float
         A fixed surface temperature [K] that bypasses the heat balance (water, test scenes); NaN elsewhere.
+    released_Wm2 : float
+        Heat set free behind the layers [W/m^2] (the flexing of a rolling tyre).
     """
 
     material: Material
@@ -115,3 +117,4 @@ class Surface:
     solar_absorptance: float
     interior_K: float = float("nan")
     prescribed_K: float = float("nan")
+    released_Wm2: float = 0.0

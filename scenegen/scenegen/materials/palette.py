@@ -73,8 +73,9 @@ class PaletteBuilder:
         solar_absorptance: float | None = None,
         interior_K: float = float("nan"),
         prescribed_K: float = float("nan"),
+        released_Wm2: float = 0.0,
     ) -> int:
-        """Add a variant with properties of its own (paint on asphalt, a pond of known warmth), once per key.
+        """Add a variant with properties of its own (paint on asphalt, a bonnet over a hot engine), once per key.
 
         Counts towards the variants of the material; the key separates it from the drawn ones.
         """
@@ -91,6 +92,7 @@ class PaletteBuilder:
                         else solar_absorptance,
                         interior_K=interior_K if np.isfinite(interior_K) else drawn.interior_K,
                         prescribed_K=prescribed_K,
+                        released_Wm2=released_Wm2,
                     )
                 ),
             )

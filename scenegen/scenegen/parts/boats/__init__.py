@@ -1,0 +1,1 @@
+"""Boats: hulls, masts, stays and engines."""

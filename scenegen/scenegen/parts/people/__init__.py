@@ -1,0 +1,1 @@
+"""People: bodies with limbs, bare skin and clothing, in several postures."""

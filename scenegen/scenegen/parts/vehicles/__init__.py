@@ -1,0 +1,1 @@
+"""Vehicles: cars, vans, buses and trucks, parked or driven."""
