@@ -8,6 +8,7 @@ import numpy as np
 from jaxtyping import Float32, Float64, UInt8, UInt16, UInt32
 
 from scenegen.materials.material import Surface
+from scenegen.movers.mover import Mover
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +104,9 @@ class World:
         Lower and upper corner of the airspace flights may use.
     counts : tuple of (str, int)
         What was built, for listings: ("buildings", 231), ("trees", 410), ...
+    movers : tuple of Mover
+        What moves through it. Not part of the mesh; their surfaces are entries of the palette, their ids go on where
+        those of the mesh end or lie among them.
     """
 
     map: str
@@ -116,3 +120,4 @@ class World:
     ground: HeightField
     flight_box_m: tuple[tuple[float, float, float], tuple[float, float, float]]
     counts: tuple[tuple[str, int], ...]
+    movers: tuple[Mover, ...] = ()

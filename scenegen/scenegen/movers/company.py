@@ -1,0 +1,79 @@
+"""A company of movers as arrays: what they are, fixed; where their vertices are, a pure function of time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float64, Int64
+
+from scenegen.geometry.part import Part, concatenate
+from scenegen.movers.gait import Walkers
+from scenegen.movers.mover import Mover
+from scenegen.movers.route import HEADING, TRAVELLED, Timetable, Z, matrices
+
+
+@dataclass(frozen=True, eq=False)
+class Company:
+    """Some or all movers of a world.
+
+    Attributes
+    ----------
+    movers : tuple of Mover
+    body : Part
+        Their rest poses, merged in order, each in its own frame.
+    owner : int64 (vertices,)
+        Mover of each vertex.
+    timetable : Timetable
+    walkers : Walkers
+    walking : int64 (gaits,)
+        Movers that have a gait.
+    """
+
+    movers: tuple[Mover, ...]
+    body: Part
+    owner: Int64[np.ndarray, "vertices"]
+    timetable: Timetable
+    walkers: Walkers
+    walking: Int64[np.ndarray, "gaits"]
+
+    @staticmethod
+    def of(movers: Sequence[Mover]) -> Company:
+        """Put movers together; at least one."""
+        counts = [len(m.body.vertices) for m in movers]
+        first = np.cumsum([0, *counts])
+        walking = [k for k, m in enumerate(movers) if m.gait is not None]
+        return Company(
+            movers=tuple(movers),
+            body=concatenate([m.body for m in movers]),
+            owner=np.repeat(np.arange(len(movers)), counts),
+            timetable=Timetable.of([m.route for m in movers]),
+            walkers=Walkers.of(
+                [m.gait for m in movers if m.gait is not None], [int(first[k]) for k in walking]
+            ),
+            walking=np.array(walking, np.int64),
+        )
+
+    def poses(self, time_s: float) -> Float64[np.ndarray, "movers 4 4"]:
+        """`world_from_mover` of all at one time."""
+        return matrices(self.timetable.at(time_s))
+
+    def places(self, times_s: Float64[np.ndarray, "times"]) -> Float64[np.ndarray, "times movers 4"]:
+        """Places [m] and headings [rad] at several times."""
+        return np.stack([self.timetable.at(float(t))[:, [0, 1, Z, HEADING]] for t in times_s])
+
+    def vertices(self, time_s: float) -> Float64[np.ndarray, "vertices 3"]:
+        """World positions of all vertices at one time [m]."""
+        state = self.timetable.at(time_s)
+        rest = self.body.vertices
+        if len(self.walking):
+            rest, sunk = self.walkers.swing(rest, state[self.walking, TRAVELLED])
+            state[self.walking, Z] -= sunk
+        pose = matrices(state)[:, :3]
+        x, y, z = np.ascontiguousarray(rest.T)
+        world = np.empty((len(rest), 3))
+        for row in range(3):
+            a, b, c, shift = pose[:, row].T[:, self.owner]
+            world[:, row] = a * x + b * y + c * z + shift
+        return world
