@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from jaxtyping import Float32
@@ -28,6 +28,8 @@ class ThermalState:
         Kinetic temperature [K].
     texture_K : float32 (palette,)
         Amplitude of the small-scale temperature variation of each palette entry at this moment [K].
+    moving_K : float32 (moving,)
+        Temperature of the sites of all movers, in the order of `World.movers` [K].
     """
 
     season: Season
@@ -36,3 +38,4 @@ class ThermalState:
     atmosphere: Atmosphere
     temperature_K: Float32[np.ndarray, "sites"]
     texture_K: Float32[np.ndarray, "palette"]
+    moving_K: Float32[np.ndarray, "moving"] = field(default_factory=lambda: np.zeros(0, np.float32))

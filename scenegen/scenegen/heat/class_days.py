@@ -107,13 +107,13 @@ class ClassDays:
     ) -> ClassDays:
         """Solve every class of a world for a day."""
         traits = ClassTraits.of(palette, classes.palette, classes.normal, weather)
-        Y, inner = _conduction(palette, classes.palette, day)
+        Y, inner = conduction_behind(palette, classes.palette, day)
         beam = outlook.beam_over(day, sun_hour)
         neighbours = Neighbours.unknown(day, outlook.neighbour.shape[1])
         guess: Float64[np.ndarray, "classes samples"] | None = None
         for _ in range(_EXCHANGES):
             short, long = mean_irradiance(outlook, neighbours, day)
-            absorbed = _absorbed(traits, short, long, day.direct_Wm2 * beam)
+            absorbed = absorbed_by(traits, short, long, day.direct_Wm2 * beam)
             means = solve_day(absorbed, inner, Y, traits.skins, day.air, guess, tolerance_K=0.02)
             guess = _bounded(means.temperature_K, traits)
             neighbours = Neighbours.of(
@@ -128,10 +128,10 @@ class ClassDays:
         short, long = mean_irradiance(outlook, neighbours, day)
         cos_sun = np.maximum(np.einsum("ci,ni->cn", classes.normal, day.sun), 0.0) * (day.sun[:, 2] > 0.0)
         lit = solve_day(
-            _absorbed(traits, short, long, day.direct_Wm2 * cos_sun), inner, Y, traits.skins, day.air, guess
+            absorbed_by(traits, short, long, day.direct_Wm2 * cos_sun), inner, Y, traits.skins, day.air, guess
         )
         shaded = solve_day(
-            _absorbed(traits, short, long, 0.0 * cos_sun), inner, Y, traits.skins, day.air, guess
+            absorbed_by(traits, short, long, 0.0 * cos_sun), inner, Y, traits.skins, day.air, guess
         )
         return ClassDays(traits, Y, cos_sun, neighbours, lit, shaded)
 
@@ -148,12 +148,13 @@ def mean_irradiance(
     return short, long + np.einsum("cg,gn->cn", outlook.neighbour, neighbours.long_Wm2)
 
 
-def _absorbed(
+def absorbed_by(
     traits: ClassTraits,
     short_Wm2: Float64[np.ndarray, "classes samples"],
     long_Wm2: Float64[np.ndarray, "classes samples"],
     beam_Wm2: Float64[np.ndarray, "classes samples"],
 ) -> Float64[np.ndarray, "classes samples"]:
+    """Radiation that classes absorb of what falls on them [W/m^2]."""
     sun = short_Wm2 + traits.direct_factor[:, None] * beam_Wm2
     return np.asarray(traits.absorptance[:, None] * sun + traits.skins.emissivity[:, None] * long_Wm2)
 
@@ -165,10 +166,10 @@ def _bounded(
     return np.where(np.isfinite(fixed), fixed, np.minimum(temperature_K, traits.ceiling_K[:, None]))
 
 
-def _conduction(
+def conduction_behind(
     palette: tuple[Surface, ...], entry: Int64[np.ndarray, "classes"], day: Day
 ) -> tuple[Complex128[np.ndarray, "classes harmonics"], Float64[np.ndarray, "classes samples"]]:
-    """Admittance of each class, and the heat its inner space sends out."""
+    """Admittance of palette entries, and the heat their inner spaces send out [W/m^2]."""
     samples = day.hour.size
     omega = harmonics(samples)
     Y = np.zeros((len(palette), omega.size), dtype=np.complex128)

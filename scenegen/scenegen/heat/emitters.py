@@ -44,6 +44,9 @@ class _First(IntEnum):
 
 EMITTER_GROUPS = 26
 """Number of groups; the columns of `Exposure.neighbour_share`."""
+GROUND_GROUPS = (_First.DARK_GROUND, _First.PALE_GROUND, _First.PLANT_GROUND)
+"""What lies below whatever stands or drives."""
+WATER_GROUP = _First.WATER
 _DARK_ABSORPTANCE = 0.75
 
 

@@ -15,9 +15,11 @@ from scenegen.heat.class_days import ClassDays, mean_irradiance
 from scenegen.heat.classes import ThermalClasses
 from scenegen.heat.expansion import Expansion, site_temperatures
 from scenegen.heat.forcing import Day
+from scenegen.heat.moving import moving_temperatures
 from scenegen.heat.outlook import Outlook
 from scenegen.heat.shadow import memory
 from scenegen.heat.texture import NIGHT_SHARE, amplitude_factor, solar_memory
+from scenegen.movers.company import Company
 from scenegen.radiometry.atmosphere import Atmosphere
 from scenegen.thermal_state import ThermalState
 from scenegen.world import World
@@ -33,19 +35,22 @@ class HeatModel:
     exposure : Exposure
     classes : ThermalClasses
     outlook : Outlook
+    company : Company
+        The world's movers.
     """
 
     world: World
     exposure: Exposure
     classes: ThermalClasses
     outlook: Outlook
+    company: Company
 
     @staticmethod
     def of(world: World, exposure: Exposure) -> HeatModel:
         """Sort the sites into classes and average what each class sees."""
         classes = ThermalClasses.of(world)
         outlook = Outlook.of(classes, world.palette, exposure, world.sites.area.astype(np.float64))
-        return HeatModel(world, exposure, classes, outlook)
+        return HeatModel(world, exposure, classes, outlook, Company.of(world.movers))
 
     def solve(self, weather: Weather, hour: float) -> ThermalState:
         """Temperatures at one hour of a periodic day of this weather."""
@@ -72,6 +77,7 @@ class HeatModel:
             atmosphere=weather.atmosphere(hour),
             temperature_K=temperature,
             texture_K=self._texture(days, day, felt_lit),
+            moving_K=moving_temperatures(self.company, self.world.palette, self.classes, days, day, weather),
         )
 
     def _texture(
@@ -130,4 +136,7 @@ def solve_uniform(world: World, temperature_K: float, atmosphere: Atmosphere) ->
         atmosphere=atmosphere,
         temperature_K=np.full(world.sites.area.size, temperature_K, dtype=np.float32),
         texture_K=np.zeros(len(world.palette), dtype=np.float32),
+        moving_K=np.full(
+            sum(len(m.body.site_position) for m in world.movers), temperature_K, dtype=np.float32
+        ),
     )

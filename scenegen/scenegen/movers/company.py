@@ -13,6 +13,19 @@ from scenegen.movers.gait import Walkers
 from scenegen.movers.mover import Mover
 from scenegen.movers.route import HEADING, TRAVELLED, Timetable, Z, matrices
 
+_NOTHING = np.zeros(0, np.int64)
+_NOBODY = Part(
+    vertices=np.zeros((0, 3)),
+    faces=_NOTHING.reshape(0, 3),
+    surface=_NOTHING,
+    semantic=_NOTHING,
+    object=_NOTHING,
+    corner_site=_NOTHING.reshape(0, 3),
+    site_position=np.zeros((0, 3)),
+    site_normal=np.zeros((0, 3)),
+    site_standoff=np.zeros(0),
+)
+
 
 @dataclass(frozen=True, eq=False)
 class Company:
@@ -23,8 +36,10 @@ class Company:
     movers : tuple of Mover
     body : Part
         Their rest poses, merged in order, each in its own frame.
-    owner : int64 (vertices,)
-        Mover of each vertex.
+    owner, site_owner : int64 (vertices,), int64 (sites,)
+        Mover of each vertex and of each thermal site.
+    site_surface : int64 (sites,)
+        Palette index.
     timetable : Timetable
     walkers : Walkers
     walking : int64 (gaits,)
@@ -34,26 +49,39 @@ class Company:
     movers: tuple[Mover, ...]
     body: Part
     owner: Int64[np.ndarray, "vertices"]
+    site_owner: Int64[np.ndarray, "sites"]
+    site_surface: Int64[np.ndarray, "sites"]
     timetable: Timetable
     walkers: Walkers
     walking: Int64[np.ndarray, "gaits"]
 
     @staticmethod
     def of(movers: Sequence[Mover]) -> Company:
-        """Put movers together; at least one."""
+        """Put movers together."""
         counts = [len(m.body.vertices) for m in movers]
+        body = concatenate([_NOBODY, *(m.body for m in movers)])
+        surface = np.zeros(len(body.site_position), np.int64)
+        surface[body.corner_site.ravel()] = np.repeat(body.surface, 3)
         first = np.cumsum([0, *counts])
         walking = [k for k, m in enumerate(movers) if m.gait is not None]
         return Company(
             movers=tuple(movers),
-            body=concatenate([m.body for m in movers]),
+            body=body,
             owner=np.repeat(np.arange(len(movers)), counts),
+            site_owner=np.repeat(np.arange(len(movers)), [len(m.body.site_position) for m in movers]),
+            site_surface=surface,
             timetable=Timetable.of([m.route for m in movers]),
             walkers=Walkers.of(
                 [m.gait for m in movers if m.gait is not None], [int(first[k]) for k in walking]
             ),
             walking=np.array(walking, np.int64),
         )
+
+    @property
+    def speed_mps(self) -> Float64[np.ndarray, "movers"]:
+        """Mean speed of each over its round."""
+        table = self.timetable
+        return np.asarray(table.round_m / (table.count * table.step_s))
 
     def poses(self, time_s: float) -> Float64[np.ndarray, "movers 4 4"]:
         """`world_from_mover` of all at one time."""
