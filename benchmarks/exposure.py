@@ -31,7 +31,7 @@ from scenegen_render.exposure.expose import expose
 from scenegen_render.exposure.facets import FacetAverage
 from scenegen_render.exposure.hemisphere import gather_list
 from scenegen_render.exposure.knobs import ExposureKnobs
-from scenegen_render.exposure.rays import CELL_INSET_M, SiteRays
+from scenegen_render.exposure.rays import SiteRays
 from scenegen_render.exposure.sun import SunSteps, sun_beam
 from scenegen_render.exposure.views import shares
 from scenegen_render.reference_scenes import looking
@@ -71,9 +71,9 @@ def floor_ms(loaded: LoadedWorld) -> float:
 def stages_of_exposure(loaded: LoadedWorld, knobs: ExposureKnobs, stages: Stages) -> None:
     """The parts of `expose`, one by one."""
     world = loaded.world
-    rays = stages("  rays", lambda: SiteRays.of(world, CELL_INSET_M))
+    for_sun, rays = stages("  rays", lambda: SiteRays.of(world))
     steps = stages("  sun positions", lambda: SunSteps.of(SEASON, knobs.sun_step_min))
-    stages("  sun visibility", lambda: sun_beam(loaded, rays, steps))
+    stages("  sun visibility", lambda: sun_beam(loaded, for_sun, steps))
     turn = stream(0, "turn").random(len(world.sites.area), dtype=np.float32)
     gather = stages("  gather list", lambda: gather_list(loaded, rays, knobs.directions, turn))
     stages("  shares", lambda: shares(gather, *group_sites(world)))

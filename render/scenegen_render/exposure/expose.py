@@ -10,7 +10,7 @@ from scenegen.heat.emitters import group_sites
 from scenegen_render.exposure.facets import FacetAverage
 from scenegen_render.exposure.hemisphere import gather_list
 from scenegen_render.exposure.knobs import ExposureKnobs
-from scenegen_render.exposure.rays import CELL_INSET_M, CONTACT_INSET_M, SiteRays
+from scenegen_render.exposure.rays import SiteRays
 from scenegen_render.exposure.sun import SunSteps, sun_beam
 from scenegen_render.exposure.views import shares
 from scenegen_render.scene import LoadedWorld
@@ -38,9 +38,10 @@ def expose(
     knobs = knobs or ExposureKnobs()
     world = loaded.world
     steps = SunSteps.of(season, knobs.sun_step_min)
-    beam = sun_beam(loaded, SiteRays.of(world, CONTACT_INSET_M), steps)
+    for_sun, for_hemisphere = SiteRays.of(world)
+    beam = sun_beam(loaded, for_sun, steps)
     turn = rng.random(len(world.sites.area), dtype=np.float32)
-    gather = gather_list(loaded, SiteRays.of(world, CELL_INSET_M), knobs.directions, turn)
+    gather = gather_list(loaded, for_hemisphere, knobs.directions, turn)
     group, groups = group_sites(world)
     sky, share = shares(gather, group, groups)
     if knobs.smoothing:

@@ -11,12 +11,14 @@ from jaxtyping import Float32, UInt32
 from scenegen.exposure import SKY_BINS
 from scenegen_render import backend
 from scenegen_render.exposure.directions import cosine_directions, split_directions, tangents, upright_frame
-from scenegen_render.exposure.lanes import Lanes, launches
+from scenegen_render.exposure.lanes import Lanes, Together, launches
 from scenegen_render.exposure.rays import SiteRays
 from scenegen_render.scene import LoadedWorld
 
 _WALL = 0.05
 """Largest vertical part of the normal of a wall (3 deg)."""
+_SECTORS = 8
+"""Directions are traced sector by sector of the azimuth, so that rays of one packet look the same way."""
 
 
 def gather_list(
@@ -39,7 +41,7 @@ def gather_list(
     sites = len(rays.order)
     fan = _Fan(loaded, rays, directions, turn)
     met = dr.empty(mi.UInt, directions * sites)
-    for lanes in launches(sites, directions):
+    for lanes in launches(sites, directions, Together.ROWS_OF_A_PLACE):
         entry = fan.trace(lanes)
         target = lanes.row * fan.sites + dr.gather(mi.UInt, rays.site, lanes.place, lanes.active)
         dr.scatter(met, entry, target, lanes.active, mode=dr.ReduceMode.Permute)
@@ -63,8 +65,10 @@ class _Fan:
         self.turn = backend.upload(np.stack([turn[rays.order], wall.astype(np.float32)], axis=1))
         spiral, split = cosine_directions(directions), split_directions(directions)
         whole = np.arctan2(spiral[:, 1], spiral[:, 0]) / (2.0 * np.pi) % 1.0
-        self.spiral = backend.upload(np.stack([spiral[:, 2], whole], axis=1).astype(np.float32))
-        self.split = backend.upload(split.astype(np.float32))
+        sector = np.lexsort((spiral[:, 2], np.floor(whole * _SECTORS)))
+        self.spiral = backend.upload(np.stack([spiral[:, 2], whole], axis=1)[sector].astype(np.float32))
+        sector = np.lexsort((split[:, 0], np.floor(split[:, 1] * (_SECTORS // 2)), split[:, 2]))
+        self.split = backend.upload(split[sector].astype(np.float32))
         self.sites = dr.opaque(mi.UInt, len(rays.order))
 
     def trace(self, lanes: Lanes) -> Any:
@@ -72,7 +76,7 @@ class _Fan:
         _, dr = backend.modules()
         toward = self._toward(lanes)
         start = self.rays.start(lanes.place, toward, lanes.active)
-        hit = self.loaded.scene.ray_intersect_preliminary(start, coherent=False, active=lanes.active)
+        hit = self.loaded.scene.ray_intersect_preliminary(start, coherent=True, active=lanes.active)
         valid = hit.is_valid()
         site = self.loaded.nearest_site(dr.select(valid, hit.prim_index, 0), hit.prim_uv)
         return dr.select(valid, site, self.sites + sky_bin(toward.z))

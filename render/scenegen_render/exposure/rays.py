@@ -50,26 +50,20 @@ class SiteRays:
     standoff: Any
 
     @staticmethod
-    def of(world: World, inset_m: float) -> SiteRays:
-        """Sort the sites and put their ray origins on the device.
-
-        Parameters
-        ----------
-        world : World
-        inset_m : float
-            How far origins on the border of a facet may move inwards: `CONTACT_INSET_M` or `CELL_INSET_M`.
-        """
+    def of(world: World) -> tuple[SiteRays, SiteRays]:
+        """Sort the sites and put their ray origins on the device: those for the sun, and those for the hemisphere."""
         sites = world.sites
         order = spatial_order(sites.position)
-        normal = sites.normal[order]
-        origin = sites.position[order] + _inset(world, inset_m)[order] + np.float32(_LIFT_M) * normal
-        return SiteRays(
-            order=order,
-            site=backend.upload(order.astype(np.uint32)),
-            origin=backend.upload(origin),
-            normal=backend.upload(normal),
-            standoff=backend.upload(sites.standoff[order]),
-        )
+        inward, room = _inward(world)
+        normal, standoff = backend.upload(sites.normal[order]), backend.upload(sites.standoff[order])
+        index = backend.upload(order.astype(np.uint32))
+        lifted = sites.position + np.float32(_LIFT_M) * sites.normal
+
+        def inset(farthest_m: float) -> SiteRays:
+            origin = lifted + np.minimum(np.float32(farthest_m), room)[:, None] * inward
+            return SiteRays(order, index, backend.upload(origin[order]), normal, standoff)
+
+        return inset(CONTACT_INSET_M), inset(CELL_INSET_M)
 
     def start(self, place: Any, direction: Any, active: Any) -> Any:
         """Rays from places of the order.
@@ -85,8 +79,18 @@ class SiteRays:
         return mi.Ray3f(origin + direction * dr.gather(mi.Float, self.standoff, place, active), direction)
 
 
-def _inset(world: World, inset_m: float) -> Float32[np.ndarray, "sites 3"]:
-    """Shift of each ray origin along its facet towards the middle of the faces around it [m]; zero inside a facet."""
+def _inward(
+    world: World,
+) -> tuple[Float32[np.ndarray, "sites 3"], Float32[np.ndarray, "sites"]]:
+    """Where origins on the border of a facet may move, along the facet towards the middle of the faces around them.
+
+    Returns
+    -------
+    direction : float32 (sites, 3)
+        Unit vector; zero inside a facet.
+    room : float32 (sites,)
+        How far at most [m]; zero for lumped sites.
+    """
     sites, vertices, faces = world.sites, world.mesh.vertices, world.mesh.faces
     middle = (vertices[faces[:, 0]] + vertices[faces[:, 1]] + vertices[faces[:, 2]]) / np.float32(3.0)
     corner = world.corner_site.reshape(-1)
@@ -97,6 +101,6 @@ def _inset(world: World, inset_m: float) -> Float32[np.ndarray, "sites 3"]:
         shift[:, axis] = total / count - sites.position[:, axis]
     shift -= np.einsum("sk,sk->s", shift, sites.normal)[:, None] * sites.normal
     length = np.linalg.norm(shift, axis=1)
-    ordinary = sites.standoff < _LUMP_M
-    scale = np.where(ordinary, np.minimum(inset_m, _INSET_SHARE * length) / np.maximum(length, 1e-9), 0.0)
-    return np.asarray(scale[:, None] * shift, np.float32)
+    room = np.where(sites.standoff < _LUMP_M, _INSET_SHARE * length, 0.0)
+    direction = shift / np.maximum(length, 1e-9)[:, None]
+    return np.asarray(direction, np.float32), np.asarray(room, np.float32)

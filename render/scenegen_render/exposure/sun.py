@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float16, Float32, Float64, Int64
 from scenegen.climate.season import Season
 from scenegen.climate.sun import daylight, sun_direction, sun_samples
 from scenegen_render import backend
-from scenegen_render.exposure.lanes import launches
+from scenegen_render.exposure.lanes import Together, launches
 from scenegen_render.exposure.rays import SiteRays
 from scenegen_render.scene import LoadedWorld
 
@@ -100,7 +100,7 @@ class _SunCaster:
         sites = len(self.rays.order)
         lit = dr.empty(mi.Bool, sites * ends)
         width = dr.opaque(mi.UInt, ends)
-        for lanes in launches(sites, ends):
+        for lanes in launches(sites, ends, Together.PLACES_OF_A_ROW):
             seen = self._lit(lanes.place, lanes.row * _FINE, lanes.active)
             dr.scatter(lit, seen, lanes.place * width + lanes.row, lanes.active, mode=dr.ReduceMode.Permute)
             dr.eval(lit)
@@ -139,5 +139,5 @@ class _SunCaster:
         sun = dr.gather(mi.Vector3f, self.directions, moment, active)
         facing = dr.dot(dr.gather(mi.Vector3f, self.rays.normal, place, active), sun) > 0.0
         asked = facing & (sun.z > 0.0) & active
-        blocked = self.scene.ray_test(self.rays.start(place, sun, asked), coherent=False, active=asked)
+        blocked = self.scene.ray_test(self.rays.start(place, sun, asked), coherent=True, active=asked)
         return asked & ~blocked

@@ -17,7 +17,7 @@ from scenegen.foundation.rng import stream
 from scenegen.materials.material import Surface
 from scenegen.materials.table import material
 from scenegen_render.exposure.expose import expose
-from scenegen_render.exposure.rays import CONTACT_INSET_M, SiteRays
+from scenegen_render.exposure.rays import SiteRays
 from scenegen_render.exposure.sun import SunSteps, sun_beam
 from scenegen_render.reference_scenes import Patch, box, plate, world_of
 from scenegen_render.scene import load
@@ -67,7 +67,7 @@ def test_shadow_of_a_box(season: Season) -> None:
         [ground, *box(tuple(map(float, LOW)), tuple(map(float, HIGH)), 3.0, 0, Semantic.WALL, 2)],
         PALETTE,
     )
-    rays, steps = SiteRays.of(world, CONTACT_INSET_M), SunSteps.of(season, 15.0)
+    (rays, _), steps = SiteRays.of(world), SunSteps.of(season, 15.0)
     beam = sun_beam(load(world), rays, steps).astype(np.float64)
 
     on_ground = np.zeros(len(world.sites.area), bool)
