@@ -96,8 +96,8 @@ class Company:
         state = self.timetable.at(time_s)
         rest = self.body.vertices
         if len(self.walking):
-            rest, sunk = self.walkers.swing(rest, state[self.walking, TRAVELLED])
-            state[self.walking, Z] -= sunk
+            rest = rest.copy()
+            rest[self.walkers.vertex] = self.walkers.step(state[self.walking, TRAVELLED])
         pose = matrices(state)[:, :3]
         x, y, z = np.ascontiguousarray(rest.T)
         world = np.empty((len(rest), 3))

@@ -25,7 +25,7 @@ class Mover:
         mover's own.
     route : Route
     gait : Gait or None
-        How limbs swing; None for what is rigid.
+        How limbs move; None for what is rigid.
     """
 
     kind: str
