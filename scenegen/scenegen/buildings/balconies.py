@@ -39,10 +39,10 @@ def _balcony() -> Template:
         [[a, 0, r], [a, -d, r], [a + t, t - d, r], [a + t, 0, r]],
         [[b, -d, r], [b, 0, r], [b - t, 0, r], [b - t, t - d, r]],
     ]
-    for quads in (outer[:1], under, floor, inner[:1]):
+    for quads in (outer, under, floor, inner):
         model.quads(np.array(quads, np.float64), 0, Semantic.BALCONY)
-    shared = np.array(outer[1:] + inner[1:] + rim, np.float64)
-    site = model.site(np.array([0.0, -d, r]), np.array([0.0, -1.0, 1.0]))
+    shared = np.array(rim, np.float64)
+    site = model.site(np.array([0.0, t / 2 - d, r]), np.array([0.0, 0.0, 1.0]))
     faces = np.arange(4 * len(shared)).reshape(-1, 4)[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
     model.mesh(shared.reshape(-1, 3), faces, 0, Semantic.BALCONY, np.full(faces.shape, site))
     return model.finish()

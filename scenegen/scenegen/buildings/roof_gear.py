@@ -35,7 +35,8 @@ class _Model:
 
 def _air_handler() -> Template:
     model = Modeller()
-    model.box((-0.5, -0.5, 0.12), (0.5, 0.5, 0.85), 0, Semantic.ROOF_EQUIPMENT)
+    model.box((-0.5, -0.5, 0.12), (0.5, 0.5, 0.85), 0, Semantic.ROOF_EQUIPMENT, covered=True)
+    _lid(model, 0.85)
     for x in (-0.25, 0.25):
         model.tube(
             np.array([x, 0, 0.8]), np.array([x, 0, 1.0]), 0.17, 0.17, 0, Semantic.ROOF_EQUIPMENT, sides=8
@@ -55,6 +56,15 @@ def _air_handler() -> Template:
             Semantic.ROOF_EQUIPMENT,
         )
     return model.finish()
+
+
+def _lid(model: Modeller, top: float) -> None:
+    """The upper side of a handler, its sites in the corners: the middle looks against the fans."""
+    corners = np.array([[-0.5, -0.5, top], [0.5, -0.5, top], [0.5, 0.5, top], [-0.5, 0.5, top]])
+    inward = np.array([0.92, 0.8, 1.0])
+    first = [model.site(c * inward, np.array([0.0, 0.0, 1.0])) for c in corners][0]
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    model.mesh(corners, faces, 0, Semantic.ROOF_EQUIPMENT, first + faces)
 
 
 def _vent() -> Template:

@@ -28,6 +28,11 @@ BODIES = tuple(_PROFILES)
 """Names of the body styles."""
 
 
+def rear_m(body: str) -> float:
+    """Where the rear bumper of a body style lies along its length [m], negative; its front is at half its length."""
+    return _PROFILES[body][0]
+
+
 def car(body: str) -> Template:
     """A car of one body style, wheels on z = 0, facing +x."""
     rear, (foot, back, front, screen), belt, roof, nose = _PROFILES[body]

@@ -21,6 +21,8 @@ BLANK, WINDOW, DOOR = 0, 1, 2
 """What fills a cell of the window grid."""
 
 _PLINTH_M = 0.6
+_DOOR_LOWER_M, _DOOR_UPPER = 0.3, 0.7
+"""Height of the two sites of a door: above the floor, and in heights of its head."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +113,8 @@ def facades(walls: Walls, filling: Int64[np.ndarray, "cells"]) -> Part:
     door = (kind == DOOR) & (j <= 2)
     semantic = np.where(door, int(Semantic.DOOR), int(Semantic.WALL))
     surface = np.where(door, walls.door[item], walls.surface[item])
-    return _assemble(walls, normal, lattice, item, quads, pane, door, semantic, surface)
+    doors = _doors(walls, item[door], i[door], j[door])
+    return _assemble(walls, normal, lattice, item, quads, pane, door, doors, semantic, surface)
 
 
 def _outward(walls: Walls) -> np.ndarray:
@@ -163,6 +166,35 @@ def _lattice(walls: Walls, normal: np.ndarray) -> _Lattice:
     return _Lattice(vertices, site, _on_wall(walls, s_item, x, z), normal[s_item])
 
 
+@dataclass(frozen=True, eq=False)
+class _Doors:
+    """Sites of doors: one near the ground, one higher up.
+
+    Attributes
+    ----------
+    corner_site : int64 (quads, 4)
+        Of the quads that are doors.
+    position : float64 (sites, 3)
+    wall : int64 (sites,)
+    """
+
+    corner_site: Int64[np.ndarray, "quads 4"]
+    position: Float64[np.ndarray, "sites 3"]
+    wall: Int64[np.ndarray, "sites"]
+
+
+def _doors(walls: Walls, item: np.ndarray, i: np.ndarray, j: np.ndarray) -> _Doors:
+    """Sites of the doors whose quads lie at columns i and rows j of walls `item`."""
+    _, first, door = np.unique(item * (i.max(initial=0) + 1) + i, return_index=True, return_inverse=True)
+    low, high = 2 * door.ravel(), 2 * door.ravel() + 1
+    below, above = np.where(j < 2, low, high), np.where(j < 1, low, high)
+    wall, column = np.repeat(item[first], 2), np.repeat(i[first], 2)
+    x = (_column_lines(walls, wall, column) + _column_lines(walls, wall, column + 1)) / 2
+    upper = np.arange(len(wall)) % 2 == 1
+    z = np.where(upper, _DOOR_UPPER * walls.first_head_m[wall], _DOOR_LOWER_M)
+    return _Doors(np.stack([below, below, above, above], axis=1), _on_wall(walls, wall, x, z), wall)
+
+
 def _on_wall(walls: Walls, item: np.ndarray, x: np.ndarray, z: np.ndarray) -> np.ndarray:
     xy = walls.start[item] + (walls.end - walls.start)[item] * x[:, None]
     return np.column_stack([xy, walls.floor_m[item] + z])
@@ -186,10 +218,11 @@ def _assemble(
     quads: np.ndarray,
     pane: Bool[np.ndarray, "quads"],
     door: Bool[np.ndarray, "quads"],
+    doors: _Doors,
     semantic: np.ndarray,
     surface: np.ndarray,
 ) -> Part:
-    """Solid quads, then reveals, then panes; panes and doors have one site each."""
+    """Solid quads, then reveals, then panes, which have one site each."""
     solid = ~pane
     opening = quads[pane]
     owner = item[pane]
@@ -203,10 +236,9 @@ def _assemble(
     reveal_site = lattice.site[np.stack([opening, after, after, opening], axis=2)].reshape(-1, 4)
 
     site_count = len(lattice.site_position)
-    door_index = np.cumsum(door) - 1
-    door_count = int(door.sum())
+    door_count = len(doors.position)
     quad_site = lattice.site[quads]
-    quad_site = np.where(door[:, None], (site_count + door_index)[:, None], quad_site)
+    quad_site[door] = site_count + doors.corner_site
     pane_site = np.repeat((site_count + door_count + np.arange(count))[:, None], 4, axis=1)
 
     all_quads = np.concatenate([quads[solid], reveals, inner_id])
@@ -217,7 +249,6 @@ def _assemble(
     )
     skins = np.concatenate([surface[solid], walls.surface[np.repeat(owner, 4)], walls.glass[owner]])
     vertices = np.concatenate([lattice.vertices, inner.reshape(-1, 3)])
-    door_middle = lattice.vertices[quads[door]].mean(axis=1)
     return Part(
         vertices=vertices,
         faces=quads_to_triangles(all_quads),
@@ -225,7 +256,7 @@ def _assemble(
         semantic=np.repeat(labels, 2),
         object=np.repeat(walls.object[wall_of], 2),
         corner_site=quads_to_triangles(all_sites),
-        site_position=np.concatenate([lattice.site_position, door_middle, inner.mean(axis=1)]),
-        site_normal=np.concatenate([lattice.site_normal, normal[item[door]], normal[owner]]),
+        site_position=np.concatenate([lattice.site_position, doors.position, inner.mean(axis=1)]),
+        site_normal=np.concatenate([lattice.site_normal, normal[doors.wall], normal[owner]]),
         site_standoff=np.full(site_count + door_count + count, STANDOFF_M),
     )

@@ -20,6 +20,8 @@ from scenegen.geometry.relief import Relief
 
 _NUDGE_M = 0.04
 """How far sites on a region's outline move inwards, to lie clear of the plane of a wall or kerb [m]."""
+_KERB_CELL_M, _WAYS = 3.5, 16
+"""Kerbs share a site within such a cell and a sixteenth of the compass."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +41,11 @@ class Region:
         True for a level surface: a pond, a flat roof.
     lumped : bool
         One thermal site for the whole region: it is too small to have a gradient.
+    grain_m : float
+        Cells of this size [m] have one site at most; 0 to give each vertex its own.
+    merge_m : float
+        The same for its neighbours along its outline. For paint: it cuts the mesh, but changes nothing in what the
+        asphalt beside it sees.
     """
 
     outline: shapely.Polygon
@@ -49,6 +56,8 @@ class Region:
     hole: bool = False
     absolute: bool = False
     lumped: bool = False
+    grain_m: float = 0.0
+    merge_m: float = 0.0
 
 
 def drape(plan: Triangulation, regions: Sequence[Region], relief: Relief) -> Part:
@@ -84,6 +93,8 @@ class _Table:
     hole: Bool[np.ndarray, "regions"]
     absolute: Bool[np.ndarray, "regions"]
     lumped: Bool[np.ndarray, "regions"]
+    grain: Float64[np.ndarray, "regions"]
+    merge: Float64[np.ndarray, "regions"]
 
     @staticmethod
     def of(regions: Sequence[Region]) -> _Table:
@@ -95,6 +106,8 @@ class _Table:
             np.array([r.hole for r in regions], bool),
             np.array([r.absolute for r in regions], bool),
             np.array([r.lumped for r in regions], bool),
+            np.array([r.grain_m for r in regions], np.float64),
+            np.array([r.merge_m for r in regions], np.float64),
         )
 
     def height(self, region: np.ndarray, relief_m: np.ndarray) -> np.ndarray:
@@ -121,8 +134,13 @@ def _surface(
     codes = triangles.ravel() * len(kinds) + kind.ravel()[corner_region]
     codes = np.where(table.lumped[corner_region], -1 - corner_region, codes)
     site, corner = np.unique(codes, return_inverse=True)
-    corner_site = corner.reshape(-1, 3)
-    position, normal = _site_frame(vertices, faces, corner_site, len(site))
+    cell = np.zeros(len(points))
+    np.maximum.at(cell, triangles.ravel(), np.repeat(table.merge[region], 3))
+    grain = np.zeros(len(kinds))
+    np.maximum.at(grain, kind.ravel(), table.grain)
+    merged, count = _merged(points, site, cell, grain)
+    corner_site = merged[corner].reshape(-1, 3)
+    position, normal = _site_frame(vertices, faces, corner_site, count)
     return Part(
         vertices=vertices,
         faces=faces,
@@ -132,8 +150,25 @@ def _surface(
         corner_site=corner_site,
         site_position=position,
         site_normal=normal,
-        site_standoff=np.full(len(site), STANDOFF_M),
+        site_standoff=np.full(count, STANDOFF_M),
     )
+
+
+def _merged(points: np.ndarray, code: np.ndarray, cell_m: np.ndarray, grain_m: np.ndarray) -> tuple[np.ndarray, int]:
+    """Site of each code (point times kinds plus kind; negative for lumps), those in one cell made one; their number."""
+    point, kind = np.divmod(np.maximum(code, 0), len(grain_m))
+    size = np.where(code < 0, 0.0, np.maximum(cell_m[point], grain_m[kind]))
+    whole = np.flatnonzero(size > 0)
+    square = np.floor(points[point[whole]] / size[whole, None]).astype(np.int64)
+    label = np.stack([*square.T, np.rint(size[whole] * 1e3).astype(np.int64), kind[whole]], axis=1)
+    low = label.min(axis=0, initial=0)
+    span = label.max(axis=0, initial=0) - low + 1
+    key = np.ravel_multi_index(tuple((label - low).T), tuple(span.tolist()))
+    _, first, group = np.unique(key, return_index=True, return_inverse=True)
+    lead = np.arange(len(code))
+    lead[whole] = whole[first][group]
+    kept, site = np.unique(lead, return_inverse=True)
+    return site, len(kept)
 
 
 def _site_frame(
@@ -185,19 +220,30 @@ def _steps(
 
 
 def _step_part(corners: np.ndarray, region: np.ndarray, table: _Table) -> Part:
-    """Kerb quads, one site each: a kerb is too low for more."""
+    """Kerb quads; those of a region that look the same way in one cell share a site: a kerb is too low for more."""
     count = len(corners)
     faces = quads_to_triangles(np.arange(4 * count).reshape(-1, 4))
     vertices = corners.reshape(-1, 3)
-    normals, _ = face_normals(vertices, faces)
+    normals, area = face_normals(vertices, faces)
+    way = np.rint(np.arctan2(normals[::2, 1], normals[::2, 0]) * (_WAYS / (2 * np.pi))).astype(np.int64) % _WAYS
+    cell = np.floor(corners[:, :, :2].mean(axis=1) / _KERB_CELL_M).astype(np.int64)
+    _, site = np.unique(np.column_stack([region, way, cell]), axis=0, return_inverse=True)
+    site = site.ravel()
+    weight = area[::2] + area[1::2]
+    total = np.bincount(site, weight)
+
+    def mean(values: np.ndarray) -> np.ndarray:
+        return np.stack([np.bincount(site, weight * v) / total for v in values.T], axis=1)
+
+    normal = mean(normals[::2])
     return Part(
         vertices=vertices,
         faces=faces,
         surface=np.repeat(table.surface[region], 2),
         semantic=np.repeat(table.semantic[region], 2),
         object=np.repeat(table.object[region], 2),
-        corner_site=np.repeat(np.repeat(np.arange(count), 2)[:, None], 3, axis=1),
-        site_position=corners.mean(axis=1),
-        site_normal=normals[::2],
-        site_standoff=np.full(count, STANDOFF_M),
+        corner_site=np.repeat(np.repeat(site, 2)[:, None], 3, axis=1),
+        site_position=mean(corners.mean(axis=1)),
+        site_normal=normal / np.linalg.norm(normal, axis=1)[:, None],
+        site_standoff=np.full(len(total), STANDOFF_M),
     )

@@ -24,6 +24,10 @@ GRID_M = 0.001
 
 _SHORTEST_M = 0.02
 _ROUNDS = 24
+_NONE = np.zeros((0, 2))
+_FREE_GAP, _ROW_GAP = 1.5, 1.0
+"""Distance of free points and of rows from line points, in halves of the segments there."""
+_ROWS_APART_M, _ROW_CLEARANCE_M = 0.5, 1.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +44,7 @@ def triangulate(
     free_points: Float64[np.ndarray, "free 2"],
     line_spacing_m: float | Float64[np.ndarray, "regions"],
     far_spacing: tuple[float, float] = (1e9, 0.0),
+    rows: Float64[np.ndarray, "rows 2"] = _NONE,
 ) -> Triangulation:
     """Triangulate a stack of polygons; where they overlap, the last one wins.
 
@@ -54,12 +59,16 @@ def triangulate(
         they meet.
     far_spacing : (float, float)
         Distance from the origin [m] beyond which the spacing along lines grows, and the growth per metre.
+    rows : float64 (rows, 2)
+        Points wanted in rows beside lines; they may lie nearer to a line than free points, which keep clear of them.
     """
     points, segments = _node(regions)
     spacing = _spacing(points, segments, regions, line_spacing_m)
     points, segments = _densify(points, segments, spacing, far_spacing)
-    points, segments, extra = _make_gabriel(points, segments, free_points)
-    everything = np.concatenate([points, extra])
+    points, segments = _make_gabriel(points, segments)
+    beside = _apart(_clear_free(points, segments, rows, _ROW_GAP))
+    free = _clear_free(points, segments, _beyond_rows(free_points, beside), _FREE_GAP)
+    everything = np.concatenate([points, beside, free])
     triangles = _delaunay(everything)
     return Triangulation(everything, triangles, _label(everything, triangles, segments, regions))
 
@@ -120,10 +129,8 @@ def _split(points: np.ndarray, segments: np.ndarray, pieces: np.ndarray) -> tupl
     return np.concatenate([points, new]), np.stack([first, last], axis=1)
 
 
-def _make_gabriel(
-    points: np.ndarray, segments: np.ndarray, free: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Split segments whose diametral circle holds a line point; drop free points inside any such circle."""
+def _make_gabriel(points: np.ndarray, segments: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Split segments whose diametral circle holds a line point."""
     first, start = cKDTree(points), len(points)
     middle, radius = _circles(points, segments)
     nearest, _ = first.query(middle)
@@ -139,20 +146,40 @@ def _make_gabriel(
         half = segments.max(axis=1) >= before
         for older in (first, cKDTree(points[start:])):
             nearest[half] = np.minimum(nearest[half], older.query(middle[half])[0])
-    return points, segments, _clear_free(points, segments, free)
+    return points, segments
 
 
-def _clear_free(points: np.ndarray, segments: np.ndarray, free: np.ndarray) -> np.ndarray:
-    """Free points outside all diametral circles, and not too close to any line point."""
+def _clear_free(points: np.ndarray, segments: np.ndarray, free: np.ndarray, gap: float) -> np.ndarray:
+    """Free points outside all diametral circles, and not within `gap` half-segments of any line point."""
+    if not len(free):
+        return free
     middle, radius = _circles(points, segments)
     reach = np.zeros(len(points))
     np.maximum.at(reach, segments.ravel(), np.repeat(radius, 2))
     distance, index = cKDTree(points).query(free)
-    free = free[distance > np.maximum(1.5 * reach[index], 0.3)]
+    free = free[distance > np.maximum(gap * reach[index], 0.3)]
+    if not len(free):
+        return free
     nearest, _ = cKDTree(free).query(middle)
     close = nearest < radius + 1e-7
     inside = cKDTree(free).query_ball_point(middle[close], radius[close] + 1e-7)
     return np.delete(free, np.unique([k for hits in inside for k in hits]).astype(np.int64), axis=0)
+
+
+def _apart(rows: np.ndarray) -> np.ndarray:
+    """Row points without those that nearly meet an earlier one, where rows of neighbours cross."""
+    pairs = cKDTree(rows).query_pairs(_ROWS_APART_M, output_type="ndarray") if len(rows) else _NONE
+    return np.delete(rows, np.unique(pairs.max(axis=1).astype(np.int64)), axis=0) if len(pairs) else rows
+
+
+def _beyond_rows(free: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Free points that keep their distance from row points."""
+    if len(rows) < 2:
+        return free
+    tree = cKDTree(rows)
+    apart = tree.query(rows, k=2)[0][:, 1]
+    distance, index = tree.query(free)
+    return np.asarray(free[distance > np.minimum(apart[index], _ROW_CLEARANCE_M)])
 
 
 def _circles(points: np.ndarray, segments: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -18,7 +18,7 @@ from scenegen.maps.city.outskirts import far_objects
 from scenegen.maps.city.park import plan_park
 from scenegen.maps.city.streets import draw_streets
 from scenegen.maps.city.terrain import build_terrain
-from scenegen.maps.city.traffic import build_traffic
+from scenegen.maps.city.traffic import build_traffic, plan_traffic
 from scenegen.maps.city.uses import Use
 from scenegen.maps.city.workshop import CityWorkshop
 from scenegen.materials.palette import PaletteBuilder
@@ -50,10 +50,11 @@ def build_city(knobs: CityKnobs, season: Season, rng: np.random.Generator) -> Wo
     layout = lay_out(plan, shop, lots)
     parks = {k: plan_park(b.yard, parks_rng) for k, b in enumerate(layout.blocks) if b.use is Use.PARK}
     gear = draw_roof_gear(layout.buildings, gear_rng)
+    traffic = plan_traffic(plan, layout, knobs, cars_rng)
 
-    builder.add(build_terrain(plan, layout, parks, shop, ground))
+    builder.add(build_terrain(plan, layout, parks, traffic.outlines(), shop, ground))
     builder.add(build_shells(layout.buildings, gear.plans, walls), *gear.parts)
-    cars, car_count = build_traffic(plan, layout, shop, cars_rng)
+    cars = build_traffic(traffic, shop, cars_rng)
     furniture, posts = build_furniture(plan, parks, shop, posts_rng)
     trees, tree_count = build_greenery(layout, parks, posts, shop, green)
     builder.add(*cars, *furniture, *trees, *far_objects(plan, shop, far))
@@ -75,7 +76,7 @@ def build_city(knobs: CityKnobs, season: Season, rng: np.random.Generator) -> Wo
             ("blocks", len(layout.blocks)),
             ("parks", len(parks)),
             ("buildings", len(layout.buildings)),
-            ("cars", car_count),
+            ("cars", len(traffic.spots)),
             ("lamps and signs", len(posts)),
             ("trees", tree_count),
         ),

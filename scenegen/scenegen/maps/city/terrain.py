@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 import shapely
 
@@ -9,7 +12,7 @@ from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region, drape
 from scenegen.geometry.part import Part
 from scenegen.geometry.planar import triangulate
-from scenegen.geometry.scatter import contact_points, graded_points
+from scenegen.geometry.scatter import contact_points, graded_points, hexagonal
 from scenegen.maps.city.districts import Block, Layout
 from scenegen.maps.city.markings import marking_quads
 from scenegen.maps.city.outskirts import FAR_M, far_regions
@@ -19,8 +22,17 @@ from scenegen.maps.city.uses import Use
 from scenegen.maps.city.workshop import CityWorkshop
 
 KERB_M = 0.12
-_GROUND_POINTS, _POINTS_PER_BUILDING = 81_000, 70
-_CONTACT_SPACING_M = 1.2
+_FINE_M, _COARSE_M, _NEAR_M = 2.9, 4.2, 4.0
+"""Spacing of the lattice within `_NEAR_M` of walls and cars, and elsewhere."""
+_LINE_M, _CAR_LINE_M = 3.2, 1.45
+"""Spacing along lines: of paving and kerbs, and around cars."""
+_SILL_M = 0.15
+"""How far below a car the ground still looks out past its sill."""
+_ROAD_GRAIN_M, _GRAIN_M = 0.5, 0.9
+_WALL_ROW = (1.6, 1.0)
+"""Spacing, distance: the row of points along walls, and the spacing on the contact line itself."""
+_CAR_ROWS = ((1.5, 0.6), (2.6, 1.6))
+"""The same for rows around cars: what a car hides of the sky falls off within its height."""
 _TUCK_M = 0.01
 
 
@@ -28,6 +40,7 @@ def build_terrain(
     plan: StreetPlan,
     layout: Layout,
     parks: dict[int, ParkPlan],
+    cars: np.ndarray,
     shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> Part:
@@ -37,6 +50,8 @@ def build_terrain(
     ----------
     plan, layout, parks
         What was drawn so far; parks by block index.
+    cars : array of shapely.Polygon
+        Plan of each car.
     shop : CityWorkshop
     rng : numpy.random.Generator
     """
@@ -48,26 +63,67 @@ def build_terrain(
         if k in parks:
             regions += park_regions(parks[k], shop, rng)
     regions += _paths(layout, shop, rng)
+    regions += _below_cars(cars, regions)
     holes = shapely.union_all([b.footprint for b in layout.buildings]).buffer(-_TUCK_M, join_style="mitre")
     solid = list(getattr(holes, "geoms", [holes]))
     regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in solid]
-    spacing = _ground_spacing(plan.outline.area - holes.area, len(layout.buildings))
     half = float(np.abs(plan.outline.bounds).max())
-    points = np.concatenate(
+    regions = [replace(r, grain_m=_grain(r)) for r in regions]
+    outlines = [r.outline for r in regions]
+    plane = triangulate(
+        outlines,
+        _lattice(plan, solid, cars, rng),
+        np.array([_line_spacing(r) for r in regions]),
+        (half * 1.03, 0.2),
+        np.concatenate([contact_points(list(cars), *row) for row in _CAR_ROWS]),
+    )
+    return drape(plane, regions, shop.relief)
+
+
+def _lattice(
+    plan: StreetPlan, solid: Sequence[shapely.Polygon], cars: np.ndarray, rng: np.random.Generator
+) -> np.ndarray:
+    """Free points: a row along walls, a lattice that is finer near walls and cars, coarser bands around the city."""
+    near = shapely.STRtree(np.concatenate([np.asarray(solid, dtype=object), cars]))
+
+    def close(points: np.ndarray, reach_m: float) -> np.ndarray:
+        mask = np.zeros(len(points), bool)
+        mask[near.query(shapely.points(points), predicate="dwithin", distance=reach_m)[0]] = True
+        return mask
+
+    fine = hexagonal(*plan.outline.bounds, _FINE_M, rng)
+    fine = fine[shapely.contains_xy(plan.outline, fine)]
+    coarse = graded_points(plan.outline.buffer(3.0), FAR_M, _COARSE_M, rng)
+    return np.concatenate(
         [
-            contact_points(solid, _CONTACT_SPACING_M, 0.9),
-            graded_points(plan.outline.buffer(3.0), FAR_M, spacing, rng),
+            contact_points(solid, *_WALL_ROW),
+            fine[close(fine, _NEAR_M)],
+            coarse[~close(coarse, _NEAR_M + _FINE_M / 2)],
         ]
     )
-    outlines = [r.outline for r in regions]
-    along = np.array([_CONTACT_SPACING_M if r.hole else 1.05 * spacing for r in regions])
-    return drape(triangulate(outlines, points, along, (half * 1.03, 0.11)), regions, shop.relief)
 
 
-def _ground_spacing(open_m2: float, buildings: int) -> float:
-    """Spacing of the lattice [m] (2/sqrt(3)/s^2 points per m^2): what buildings leave of the budget."""
-    points = max(_GROUND_POINTS - _POINTS_PER_BUILDING * buildings, 40_000)
-    return float(np.sqrt(2 / np.sqrt(3) * open_m2 / points))
+def _line_spacing(region: Region) -> float:
+    """Largest distance of points along an outline [m]."""
+    if region.hole:
+        return _WALL_ROW[0]
+    return _CAR_LINE_M if region.lumped and not region.merge_m else _LINE_M
+
+
+def _grain(region: Region) -> float:
+    """Size of the cells that have one site at most [m]: on streets finer, for what lies between cars and kerbs."""
+    return _ROAD_GRAIN_M if region.semantic == int(Semantic.ROAD) else _GRAIN_M
+
+
+def _below_cars(cars: np.ndarray, regions: Sequence[Region]) -> list[Region]:
+    """The ground below each car, with a site of its own: beside the car it is another world."""
+    whole = [r for r in regions if not r.lumped]
+    tree = shapely.STRtree(np.array([r.outline for r in whole], dtype=object))
+    car, ground = tree.query(shapely.centroid(cars), predicate="intersects")
+    top = np.zeros(len(cars), np.int64)
+    np.maximum.at(top, car, ground)
+    dark = shapely.buffer(cars, -_SILL_M, join_style="mitre")
+    return [replace(whole[k], outline=car, lumped=True) for car, k in zip(dark, top.tolist(), strict=True)]
 
 
 def _streets(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) -> list[Region]:
@@ -76,7 +132,7 @@ def _streets(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) -> 
     marking = shop.builder.new_objects()
     regions = [Region(plan.outline, shop.palette.pick("asphalt_aged", rng), int(Semantic.ROAD), road)]
     quads = shapely.polygons(marking_quads(plan, rng))
-    return regions + [Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True) for q in quads]
+    return regions + [Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True, merge_m=_LINE_M) for q in quads]
 
 
 def _block_regions(

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import shapely
+from jaxtyping import Float64, Int64
 
 from scenegen.buildings.lots import Lot
-from scenegen.geometry.cars import BODIES, LENGTH_M, WIDTH_M, car
+from scenegen.geometry.cars import BODIES, LENGTH_M, WIDTH_M, car, rear_m
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along, clear_of, first_come, rectangles
 from scenegen.geometry.relief import slopes
@@ -25,31 +28,61 @@ _PARKED = {Rank.ARTERIAL: (), Rank.COLLECTOR: (4.5,), Rank.SIDE: (3.5,)}
 _DRIVING = {Rank.ARTERIAL: (1.75, 5.3), Rank.COLLECTOR: (1.75,), Rank.SIDE: (1.3,)}
 
 
-def build_traffic(
-    plan: StreetPlan,
-    layout: Layout,
-    shop: CityWorkshop,
-    rng: np.random.Generator,
-) -> tuple[list[Part], int]:
-    """Cars as parts, one per body style, and their number."""
-    spots, lift = _spots(plan, layout, shop.knobs, rng)
-    count = len(spots)
+@dataclass(frozen=True, eq=False)
+class Traffic:
+    """Where cars stand and of what build they are.
+
+    Attributes
+    ----------
+    spots : float64 (cars, 3)
+        Place and heading [m, m, rad].
+    lift_m : float64 (cars,)
+        Height of the ground there above the relief.
+    body : int64 (cars,)
+        Index into `scenegen.geometry.cars.BODIES`.
+    size : float64 (cars,)
+        Scale of the template.
+    """
+
+    spots: Float64[np.ndarray, "cars 3"]
+    lift_m: Float64[np.ndarray, "cars"]
+    body: Int64[np.ndarray, "cars"]
+    size: Float64[np.ndarray, "cars"]
+
+    def outlines(self) -> np.ndarray:
+        """Plan of every car, an array of shapely polygons: the ground inside lies in the dark."""
+        rear = np.array([rear_m(b) for b in BODIES])[self.body]
+        front = LENGTH_M / 2
+        heading = self.spots[:, 2]
+        ahead = np.column_stack([np.cos(heading), np.sin(heading)])
+        middle = self.spots[:, :2] + ahead * (self.size * (front + rear) / 2)[:, None]
+        return rectangles(middle, self.size * (front - rear), self.size * WIDTH_M, heading)
+
+
+def plan_traffic(plan: StreetPlan, layout: Layout, knobs: CityKnobs, rng: np.random.Generator) -> Traffic:
+    """Choose where cars stand: the ground is meshed around them."""
+    spots, lift = _spots(plan, layout, knobs, rng)
+    body = rng.choice(len(BODIES), len(spots), p=[0.36, 0.2, 0.32, 0.12])
+    return Traffic(spots, lift, body, rng.uniform(0.95, 1.05, len(spots)))
+
+
+def build_traffic(traffic: Traffic, shop: CityWorkshop, rng: np.random.Generator) -> list[Part]:
+    """Cars as parts, one per body style."""
+    spots, count = traffic.spots, len(traffic.spots)
     first = shop.builder.new_objects(count)
-    body = rng.choice(len(BODIES), count, p=[0.36, 0.2, 0.32, 0.12])
     paint = np.array([shop.palette.pick(_PAINTS[int(k)], rng) for k in rng.integers(0, 4, count)])
     glass, rubber = shop.palette.pick("window_glass", rng), shop.palette.only("tyre_rubber")
     skins = np.column_stack([paint, np.full(count, glass), np.full(count, rubber)])
     slope = slopes(shop.relief, spots[:, :2])
-    position = np.column_stack([spots[:, :2], shop.relief(spots[:, :2]) + lift])
-    size = rng.uniform(0.95, 1.05, count)
+    position = np.column_stack([spots[:, :2], shop.relief(spots[:, :2]) + traffic.lift_m])
     parts = []
     for k, name in enumerate(BODIES):
-        mine = np.flatnonzero(body == k)
-        scale = size[mine, None] * np.ones(3)
+        mine = np.flatnonzero(traffic.body == k)
+        scale = traffic.size[mine, None] * np.ones(3)
         parts.append(
             place(car(name), position[mine], spots[mine, 2], scale, skins[mine], first + mine, slope[mine])
         )
-    return parts, count
+    return parts
 
 
 def _spots(
