@@ -1,0 +1,1 @@
+"""The field map: football pitches and their grounds in rolling farmland."""
