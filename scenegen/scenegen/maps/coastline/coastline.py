@@ -1,0 +1,62 @@
+"""The coastline: land and sea, what the sea has left, and what people have built there, from one generator."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from scenegen.climate.sea import sea_surface_K
+from scenegen.climate.season import Season
+from scenegen.geometry.builder import GeometryBuilder
+from scenegen.maps.coastline.claims import Claims
+from scenegen.maps.coastline.ground import build_ground
+from scenegen.maps.coastline.knobs import CoastlineKnobs
+from scenegen.maps.coastline.layout import lay_out
+from scenegen.maps.coastline.relief import draw_coast_relief, solid_heights
+from scenegen.maps.coastline.sea import build_sea, draw_sea
+from scenegen.maps.coastline.shape import draw_coast
+from scenegen.maps.coastline.things import build_things, hold_layout
+from scenegen.maps.coastline.workshop import CoastWorkshop
+from scenegen.materials.palette import PaletteBuilder
+from scenegen.world import World
+
+_MARGIN_M = 12.0
+_ROCKS = ("granite", "basalt", "limestone_marble")
+
+
+def build_coastline(knobs: CoastlineKnobs, season: Season, rng: np.random.Generator) -> World:
+    """Build one coast.
+
+    Parameters
+    ----------
+    knobs : CoastlineKnobs
+    season : Season
+        Decides what is in leaf and how warm the sea is.
+    rng : numpy.random.Generator
+        The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
+    """
+    shape, land, lots, water, ground, skins, *others = rng.spawn(16)
+    coast = draw_coast(knobs, shape)
+    palette, builder = PaletteBuilder(skins), GeometryBuilder()
+    palette.variants("asphalt_aged", 3)  # the fourth is its paint
+    rock = _ROCKS[int(ground.integers(len(_ROCKS)))]
+    layout, relief = lay_out(draw_coast_relief(coast, knobs, land), knobs, lots)
+    shop = CoastWorkshop(relief, palette, builder, season, knobs, coast, Claims())
+    sea = draw_sea(relief, knobs, sea_surface_K(season), water)
+    hold_layout(layout, shop)
+    things = build_things(layout, rock, shop, others)
+    builder.add(build_ground(layout, things.holes, rock, shop, ground), build_sea(sea, shop), *things.parts)
+    merged = builder.merge()
+    half = coast.half_m - _MARGIN_M
+    return World(
+        map="coastline",
+        mesh=merged.mesh,
+        face_surface=merged.face_surface,
+        face_semantic=merged.face_semantic,
+        face_object=merged.face_object,
+        corner_site=merged.corner_site,
+        sites=merged.sites,
+        palette=palette.surfaces(),
+        ground=solid_heights(relief, coast.half_m + 40.0, 2.0),
+        flight_box_m=((-half, -half, 0.0), (half, half, knobs.flight_ceiling_m)),
+        counts=things.counts,
+    )

@@ -1,0 +1,27 @@
+"""What every builder of one coast needs at hand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from scenegen.maps.coastline.claims import Claims
+from scenegen.maps.coastline.knobs import CoastlineKnobs
+from scenegen.maps.coastline.shape import Coast
+from scenegen.parts.workshop import Workshop
+
+
+@dataclass(frozen=True, eq=False)
+class CoastWorkshop(Workshop):
+    """Shared by all parts of one coast while it is built.
+
+    Attributes
+    ----------
+    knobs : CoastlineKnobs
+    coast : Coast
+    claims : Claims
+        Who stands where.
+    """
+
+    knobs: CoastlineKnobs
+    coast: Coast
+    claims: Claims
