@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import numpy as np
+import shapely
 
 from scenegen.buildings.roof_gear import draw_roof_gear
 from scenegen.buildings.shells import build_shells
 from scenegen.climate.season import Season
 from scenegen.geometry.builder import GeometryBuilder
+from scenegen.geometry.placement import rectangles
 from scenegen.maps.field.country import lay_out_country
+from scenegen.maps.field.crowd import build_crowd
 from scenegen.maps.field.fences import build_fences
 from scenegen.maps.field.goals import build_benches, build_corner_flags, build_goals
 from scenegen.maps.field.grounds import lay_out_grounds
 from scenegen.maps.field.houses import plan_houses
 from scenegen.maps.field.knobs import FieldKnobs
 from scenegen.maps.field.masts import build_flags, build_masts, build_power_line
+from scenegen.maps.field.outskirts import far_objects
 from scenegen.maps.field.relief import draw_land, height_field, level
 from scenegen.maps.field.stands import build_stand
 from scenegen.maps.field.terrain import build_terrain
+from scenegen.maps.field.traffic import build_traffic
 from scenegen.maps.field.workshop import FieldWorkshop
 from scenegen.materials.palette import PaletteBuilder
 from scenegen.world import World
@@ -42,7 +47,7 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
     rng : numpy.random.Generator
         The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
     """
-    own, plan_rng, land_rng, hills, skins, houses_rng, ground, walls, gear_rng, sport, posts_rng = rng.spawn(11)
+    own, plan_rng, land_rng, hills, skins, houses_rng, ground, walls, gear_rng, sport, posts_rng, cars_rng, crowd_rng, far = rng.spawn(14)
     half = 0.5 * own.uniform(*knobs.extent_m)
     palette, builder = PaletteBuilder(skins), GeometryBuilder()
     _draw_palette(palette)
@@ -70,6 +75,13 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
     line, pole_feet = build_power_line(country, half, shop, posts_rng)
     builder.add(*masts, *line, *build_flags(grounds, shop, posts_rng))
     builder.add(*build_fences(grounds, country, shop, posts_rng))
+    cars, car_places = build_traffic(grounds, country, half, shop, cars_rng)
+    posts = np.concatenate([mast_feet, pole_feet])
+    cars_plan = rectangles(car_places[:, :2], np.full(len(car_places), 5.2), np.full(len(car_places), 2.4), car_places[:, 2])
+    obstacles = np.array([*shapely.points(posts), *cars_plan, *footprints], dtype=object)
+    people, people_count = build_crowd(grounds, seats, obstacles, shop, crowd_rng)
+    distant, groves, farm_houses = far_objects(country, half, shop, far)
+    builder.add(*cars, *people, *distant)
     merged = builder.merge()
     inner = half - _MARGIN_M
     return World(
@@ -86,7 +98,10 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
         counts=(
             ("pitches", len(grounds.pitches)),
             ("stands", len(grounds.stands)),
-            ("buildings", len(houses)),
+            ("buildings", len(houses) + farm_houses),
+            ("cars", len(car_places)),
+            ("people", people_count),
+            ("groves", groves),
         ),
     )
 

@@ -1,0 +1,110 @@
+"""People: two teams and a referee on the pitch, spectators on seats, players training, others on paths."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+
+from scenegen.geometry.part import Part
+from scenegen.geometry.placement import clear_of
+from scenegen.maps.field.grounds import Grounds, Pitch
+from scenegen.maps.field.stands import Seats
+from scenegen.maps.field.workshop import FieldWorkshop
+from scenegen.parts.people.stand import stand
+
+_APART_M = 0.9
+
+
+def build_crowd(
+    grounds: Grounds,
+    seats: Sequence[Seats],
+    obstacles: np.ndarray,
+    shop: FieldWorkshop,
+    rng: np.random.Generator,
+) -> tuple[list[Part], int]:
+    """All people as parts, and their number.
+
+    Parameters
+    ----------
+    grounds : Grounds
+    seats : sequence of Seats
+    obstacles : array of shapely geometries
+        Vehicles, posts and buildings that people keep clear of.
+    shop : FieldWorkshop
+    rng : numpy.random.Generator
+    """
+    groups: list[tuple[str, np.ndarray]] = []
+    for pitch in grounds.pitches:
+        groups += _players(pitch, rng)
+    groups += _bystanders(grounds, shop, rng)
+    parts, count = [], 0
+    placed: list[np.ndarray] = []
+    for posture, rows in groups:
+        free = clear_of(shapely.points(rows[:, :2]), np.asarray([*obstacles, *placed], dtype=object), _APART_M)
+        rows = rows[free]
+        placed += list(shapely.points(rows[:, :2]))
+        position = np.column_stack([rows[:, :2], shop.relief(rows[:, :2])])
+        parts += stand(position, rows[:, 2], posture, shop, rng)
+        count += len(rows)
+    share = rng.uniform(*shop.knobs.stand_occupancy)
+    for row in seats:
+        taken = rng.uniform(size=len(row.position)) < share
+        position = row.position[taken]
+        heading = row.heading_rad + rng.normal(0.0, 0.2, len(position))
+        parts += stand(position, heading, "sitting", shop, rng)
+        count += len(position)
+    return parts, count
+
+
+def _players(pitch: Pitch, rng: np.random.Generator) -> list[tuple[str, np.ndarray]]:
+    """Two lines-ups around the ball, keepers in the goals; on training pitches a few groups, or nobody."""
+    if not pitch.main and rng.uniform() < 0.4:
+        return []
+    count = int(rng.integers(9, 12)) * 2 if pitch.main else int(rng.integers(6, 18))
+    a, b = pitch.length_m / 2, pitch.width_m / 2
+    ball = rng.uniform([-0.6 * a, -0.6 * b], [0.6 * a, 0.6 * b])
+    xy = ball * rng.uniform(0.2, 1.0, (count, 1)) + rng.normal(size=(count, 2)) * np.array([17.0, 13.0])
+    xy = np.clip(xy, [-a + 2.0, -b + 1.0], [a - 2.0, b - 1.0])
+    towards = np.arctan2(ball[1] - xy[:, 1], ball[0] - xy[:, 0]) + rng.normal(0.0, 0.7, count)
+    xy, towards = _spread(xy, towards)
+    keepers = np.array([[-a + 1.5, rng.normal(0.0, 1.0), 0.0], [a - 1.5, rng.normal(0.0, 1.0), np.pi]])
+    field = np.column_stack([xy, towards])
+    pace = rng.choice(3, len(field), p=[0.45, 0.3, 0.25])
+    rows = [("running", field[pace == 0]), ("walking", field[pace == 1])]
+    rows.append(("standing", np.concatenate([field[pace == 2], keepers])))
+    turn = pitch.frame.heading_rad
+    return [
+        (p, np.column_stack([pitch.frame.world(r[:, :2]), r[:, 2] + turn])) for p, r in rows if len(r)
+    ]
+
+
+def _spread(xy: np.ndarray, heading: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Drop whoever stands closer than an arm's length to someone before him."""
+    gap = np.linalg.norm(xy[:, None] - xy[None], axis=2)
+    close = np.tril(gap < 1.4, -1).any(axis=1)
+    return xy[~close], heading[~close]
+
+
+def _bystanders(
+    grounds: Grounds, shop: FieldWorkshop, rng: np.random.Generator
+) -> list[tuple[str, np.ndarray]]:
+    """Along the barrier watching, on the forecourt and between the cars."""
+    count = round(rng.uniform(*shop.knobs.bystanders))
+    half_x, half_y = grounds.half_m
+    watching = round(0.5 * count)
+    side = np.where(rng.uniform(size=watching) < 0.5, 1.0, -1.0)
+    reach = grounds.stands[-1].length_m / 2 + 3.0 if len(grounds.stands) > 1 else 0.0
+    x = rng.uniform(-0.6, 0.6, watching) * half_x
+    x = np.where(np.abs(x) < reach, x + np.sign(x + 1e-9) * reach, x)
+    y = side * (half_y + 0.6)
+    inside = grounds.frame.world(np.column_stack([x, y]))
+    rail = np.column_stack([inside, grounds.frame.heading_rad - side * np.pi / 2])
+    main = np.abs(x) < grounds.stands[0].length_m / 2 + 2.0
+    rail = rail[~(main & (side < 0))]
+    x0, y0, x1, y1 = shapely.transform(grounds.forecourt, grounds.frame.local).bounds
+    about = rng.uniform((x0 + 1.0, y0 + 1.0), (x1 - 1.0, y1 - 1.0), (count - watching, 2))
+    about, heading = _spread(about, rng.uniform(0.0, 2 * np.pi, len(about)))
+    court = np.column_stack([grounds.frame.world(about), heading])
+    return [("standing", rail), ("walking", court[::2]), ("standing", court[1::2])]
