@@ -11,6 +11,8 @@ from scenegen_render import backend
 from scenegen_render.camera import Camera
 from scenegen_render.trace.lit import Lit
 from scenegen_render.trace.pose import DevicePose, Pose, device_pose
+from scenegen_render.trace.surface import moving_corners
+from scenegen_render.trace.troupe import Instant
 
 _OCCLUSION_TOLERANCE = 1e-3
 _IN_FRONT = 1e-6
@@ -32,12 +34,76 @@ class Moved:
     covisible: Any
 
 
-def triangle(lit: Lit, face: Any, valid: Any) -> tuple[Any, Any, Any]:
-    """First corner and the two edges of the triangles that were hit, float64, from the float32 vertices."""
+@dataclass(frozen=True, eq=False)
+class Footing:
+    """The triangles that were hit, from float32 vertices, in float64.
+
+    Attributes
+    ----------
+    corner, along, up : mitsuba.Vector3d
+        First corner and the two edges [m].
+    moving : mitsuba.Bool
+    own : mitsuba.UInt
+        Face, counted from the troupe's first; 0 where nothing moves.
+    """
+
+    corner: Any
+    along: Any
+    up: Any
+    moving: Any
+    own: Any
+
+
+def footing(lit: Lit, now: Instant, face: Any, valid: Any) -> Footing:
+    """Look the triangles up, in the world's vertices or in those of the movers."""
     mi, dr = backend.modules()
-    corners = [dr.gather(mi.UInt, lit.loaded.faces, face * 3 + k, valid) for k in range(3)]
-    a, b, c = (mi.Vector3d(dr.gather(mi.Vector3f, lit.loaded.vertices, k, valid)) for k in corners)
-    return a, b - a, c - a
+    moving = valid & (face >= lit.first_moving)
+    own = dr.select(moving, face - lit.first_moving, 0)
+    standing = valid & ~moving
+    index = [dr.gather(mi.UInt, lit.loaded.faces, face * 3 + k, standing) for k in range(3)]
+    still = [dr.gather(mi.Vector3f, lit.loaded.vertices, k, standing) for k in index]
+    drawn = moving_corners(lit, now, own, moving)
+    a, b, c = (mi.Vector3d(dr.select(moving, m, s)) for m, s in zip(drawn, still, strict=True))
+    return Footing(a, b - a, c - a, moving, own)
+
+
+def shift(
+    lit: Lit, now: Instant, then: Instant, on: Footing, pose: DevicePose, x: Any, y: Any, depth: Any
+) -> Any:
+    """How far the points that were hit move until another instant [m]; zero where nothing moves.
+
+    The hit's barycentric coordinates are found in float64 and carried along: right for whatever turns or deforms.
+
+    Parameters
+    ----------
+    now, then : Instant
+    on : Footing
+    pose : DevicePose
+        `world_from_camera` in float64.
+    x, y : mitsuba.Float64
+        Ray direction in the camera frame at z = 1.
+    depth : mitsuba.Float
+        Planar depth, anything where nothing moves.
+    """
+    mi, dr = backend.modules()
+
+    def carried(own: Any, x: Any, y: Any, depth: Any, corner: Any, along: Any, up: Any) -> Any:
+        place = dr.fma(pose.turn(x, y, mi.Float64(1.0)), mi.Float64(depth), pose.translation) - corner
+        normal = dr.cross(along, up)
+        area = dr.rcp(dr.squared_norm(normal))
+        u = mi.Float(dr.dot(dr.cross(place, up), normal) * area)
+        v = mi.Float(dr.dot(dr.cross(along, place), normal) * area)
+        before, after = moving_corners(lit, now, own), moving_corners(lit, then, own)
+        a, b, c = (q - p for p, q in zip(before, after, strict=True))
+        return dr.fma(b - a, u, dr.fma(c - a, v, a))
+
+    return dr.if_stmt(
+        args=(on.own, x, y, depth, on.corner, on.along, on.up),
+        cond=on.moving,
+        true_fn=carried,
+        false_fn=lambda *_: mi.Vector3f(0.0),
+        label="carried",
+    )
 
 
 def planar_depth(pose: DevicePose, x: Any, y: Any, corner: Any, normal: Any) -> Any:
@@ -61,18 +127,30 @@ def planar_depth(pose: DevicePose, x: Any, y: Any, corner: Any, normal: Any) -> 
 
 
 def moved(
-    lit: Lit, camera: Camera, plane: Any, depth: Any, valid: Any, step: DevicePose, other: DevicePose
+    lit: Lit,
+    then: Instant,
+    camera: Camera,
+    plane: Any,
+    depth: Any,
+    valid: Any,
+    shift: Any,
+    step: DevicePose,
+    other: DevicePose,
 ) -> Moved:
     """Follow the pixels of this frame into another one.
 
     Parameters
     ----------
+    then : Instant
+        Where the movers are in the other frame.
     plane : mitsuba.Vector2f
         Camera-frame direction of each pixel centre at z = 1.
     depth : mitsuba.Float
         Planar depth, anything where there is sky.
     valid : mitsuba.Bool
         False for sky, which moves as a point at infinity: by the rotation alone.
+    shift : mitsuba.Vector3f
+        Own movement of the points, world frame [m].
     step : DevicePose
         From this camera's frame to the other's.
     other : DevicePose
@@ -82,7 +160,8 @@ def moved(
     place = step.turn(
         plane.x, plane.y, mi.Float(1.0)
     )  # per unit depth, so that sky and surfaces share one formula
-    place = dr.select(valid, dr.fma(step.translation, 1.0 / depth, place), place)
+    travel = step.translation + mi.Vector3f(*(dr.dot(axis, shift) for axis in other.column))
+    place = dr.select(valid, dr.fma(travel, 1.0 / depth, place), place)
     front = place.z > _IN_FRONT
     scale = camera.focal_px / dr.select(front, place.z, 1.0)
     u, v = place.x * scale, place.y * scale
@@ -94,6 +173,7 @@ def moved(
     ray = mi.Ray3f(other.translation, back)
     ray.maxt = dr.select(valid, depth * (1.0 - _OCCLUSION_TOLERANCE), dr.largest(mi.Float))
     hidden = lit.loaded.scene.ray_test(ray, coherent=True, active=inside)
+    hidden |= then.scene.ray_test(ray, coherent=True, active=inside & ~hidden)
     return Moved(flow, inside & ~hidden)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import zlib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,11 +12,14 @@ from jaxtyping import Float32
 
 from scenegen.foundation.errors import InputError
 from scenegen.materials.material import Surface
+from scenegen.movers.company import Company
 from scenegen.radiometry.band import mirror_index
 from scenegen.thermal_state import ThermalState
 from scenegen_render import backend
 from scenegen_render.scene import LoadedWorld
+from scenegen_render.trace import open_air
 from scenegen_render.trace.air import Air, device_air
+from scenegen_render.trace.troupe import Troupe, face_object, face_record
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,9 +29,15 @@ class Lit:
     Attributes
     ----------
     loaded : LoadedWorld
+    troupe : Troupe
+        The movers that appear.
+    first_moving : mitsuba.UInt
+        Index of the movers' first face in the tables.
     face : mitsuba.Float, 8 per face
         Temperatures [K] of the three corners, ``surface | semantic << 16``; irradiances [W m^-2] of the three
-        corners, packed normal. One 32-byte row holds all a hit needs.
+        corners, packed normal (none for movers). One 32-byte row holds all a hit needs.
+    object : mitsuba.UInt, 1 per face
+        Instance ids.
     surface : mitsuba.Float, 4 per palette entry
         Emissivity, texture amplitude [K], 1 / texture scale [1/m], 1 where mirror-like.
     mirror : mitsuba.Float, 4 per palette entry
@@ -40,7 +50,10 @@ class Lit:
     """
 
     loaded: LoadedWorld
+    troupe: Troupe
+    first_moving: Any
     face: Any
+    object: Any
     surface: Any
     mirror: Any
     material: Any
@@ -53,13 +66,19 @@ def light(
     state: ThermalState,
     irradiance: Float32[np.ndarray, "sites"],
     band_um: tuple[float, float],
+    cast: Sequence[int] = (),
 ) -> Lit:
     """Put temperatures, diffuse irradiance and air on the device.
 
     Parameters
     ----------
+    loaded : LoadedWorld
+    state : ThermalState
     irradiance : float32 (sites,)
         Diffuse in-band irradiance of each site [W m^-2].
+    band_um : (float, float)
+    cast : sequence of int
+        Movers that appear, see `scenegen_render.trace.casting`; their irradiance is the open sky's.
 
     Raises
     ------
@@ -68,17 +87,22 @@ def light(
     """
     mi, dr = backend.modules()
     world = loaded.world
-    for name, values in (("temperature", state.temperature_K), ("irradiance", irradiance)):
-        if len(values) != len(world.sites.area):
-            raise InputError(
-                f"{name} has {len(values)} values for the {len(world.sites.area)} sites of the world"
-            )
-        if not (np.isfinite(values).all() and (values >= 0).all()):
-            raise InputError(f"{name} of the world's sites must be finite and not negative")
+    _check("temperature", state.temperature_K, len(world.sites.area), "sites")
+    _check("irradiance", irradiance, len(world.sites.area), "sites")
+    counts = [len(m.body.site_position) for m in world.movers]
+    _check("temperature", state.moving_K, sum(counts), "sites of the movers")
+    company = Company.of([world.movers[k] for k in cast])
+    parts = np.split(state.moving_K, np.cumsum(counts)[:-1])
+    warm = np.concatenate([state.temperature_K, *(parts[k] for k in cast)])
+    shone = np.concatenate([irradiance, open_air.irradiance(company, world, state, irradiance, band_um)])
     air_seed = zlib.crc32(repr((world.map, state.season, state.hour, state.weather)).encode())
+    face, objects = _face_tables(loaded, company, backend.upload(warm), backend.upload(shone))
     return Lit(
         loaded=loaded,
-        face=_face_table(loaded, backend.upload(state.temperature_K), backend.upload(irradiance)),
+        troupe=Troupe(company),
+        first_moving=dr.opaque(mi.UInt, len(world.face_object)),
+        face=face,
+        object=objects,
         surface=backend.upload(_surface_table(world.palette, state.texture_K)),
         mirror=backend.upload(_mirror_table(world.palette, band_um)),
         material=backend.upload(np.array([s.material.id for s in world.palette], np.uint32)),
@@ -87,19 +111,34 @@ def light(
     )
 
 
-def _face_table(loaded: LoadedWorld, temperature_K: Any, irradiance: Any) -> Any:
+def _check(name: str, values: Float32[np.ndarray, "values"], count: int, what: str) -> None:
+    if len(values) != count:
+        raise InputError(f"{name} has {len(values)} values for the {count} {what} of the world")
+    if not (np.isfinite(values).all() and (values >= 0).all()):
+        raise InputError(f"{name} of the world's {what} must be finite and not negative")
+
+
+def _face_tables(
+    loaded: LoadedWorld, company: Company, temperature_K: Any, irradiance: Any
+) -> tuple[Any, Any]:
+    """`Lit.face` and `Lit.object`: the rows of the world, then those of the movers."""
     mi, dr = backend.modules()
-    count = dr.width(loaded.face_object)
-    face = dr.arange(mi.UInt, count)
-    a, b, c, what = dr.gather(mi.Vector4u, loaded.face_record, face)
-    warm = [dr.gather(mi.Float, temperature_K, site) for site in (a, b, c)]
-    lit = [dr.gather(mi.Float, irradiance, site) for site in (a, b, c)]
-    table = dr.empty(mi.Float, count * 8)
-    dr.scatter(table, mi.Vector4f(*warm, dr.reinterpret_array(mi.Float, what)), face * 2)
-    packed = dr.gather(mi.UInt, loaded.face_normal, face)
-    dr.scatter(table, mi.Vector4f(*lit, dr.reinterpret_array(mi.Float, packed)), face * 2 + 1)
-    dr.eval(table)
-    return table
+    own = face_record(company, len(loaded.world.sites.area))
+    first = dr.width(loaded.face_object)
+    table, objects = dr.empty(mi.Float, (first + len(own)) * 8), dr.empty(mi.UInt, first + len(own))
+    moving = backend.upload(own), dr.opaque(mi.UInt, 0, len(own)), backend.upload(face_object(company))
+    standing = loaded.face_record, loaded.face_normal, loaded.face_object
+    for (record, packed, owner), start in ((standing, 0), (moving, first)):
+        row = dr.arange(mi.UInt, dr.width(owner))
+        a, b, c, what = dr.gather(mi.Vector4u, record, row)
+        warm = [dr.gather(mi.Float, temperature_K, site) for site in (a, b, c)]
+        lit = [dr.gather(mi.Float, irradiance, site) for site in (a, b, c)]
+        place = row + dr.opaque(mi.UInt, start)  # opaque: every world has another number of faces
+        dr.scatter(table, mi.Vector4f(*warm, dr.reinterpret_array(mi.Float, what)), place * 2)
+        dr.scatter(table, mi.Vector4f(*lit, dr.reinterpret_array(mi.Float, packed)), place * 2 + 1)
+        dr.scatter(objects, owner, place)
+        dr.eval(table, objects)
+    return table, objects
 
 
 def _surface_table(

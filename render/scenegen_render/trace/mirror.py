@@ -8,6 +8,7 @@ from scenegen_render import backend
 from scenegen_render.trace import surface
 from scenegen_render.trace.lit import Lit
 from scenegen_render.trace.pose import DevicePose
+from scenegen_render.trace.troupe import Instant
 
 _LIFT = 2e-3
 """Start of the mirrored ray above the surface [m]; far more than float32 rounding at city distances."""
@@ -31,7 +32,7 @@ def reflectance(lit: Lit, hit: surface.Hit, on: surface.Skin, cosine: Any) -> An
     )
 
 
-def incoming(lit: Lit, pose: DevicePose, towards: Any, face: Any, depth: Any) -> Any:
+def incoming(lit: Lit, now: Instant, pose: DevicePose, towards: Any, face: Any, depth: Any) -> Any:
     """Radiance a mirror receives from its mirror direction, L_in.
 
     It is the sky, or what the mirrored ray meets (its emission and baked reflection, without texture, which averages
@@ -39,6 +40,8 @@ def incoming(lit: Lit, pose: DevicePose, towards: Any, face: Any, depth: Any) ->
 
     Parameters
     ----------
+    now : Instant
+        Of the movers, which mirrors show too.
     towards : mitsuba.Vector3f
         Direction of the camera ray that met the mirror.
     face : mitsuba.UInt
@@ -47,13 +50,13 @@ def incoming(lit: Lit, pose: DevicePose, towards: Any, face: Any, depth: Any) ->
         Distance to it in units of `towards`.
     """
     _, dr = backend.modules()
-    normal = surface.face_normal(lit, face)
+    normal = surface.face_normal(lit, now, face)
     unit = dr.normalize(towards)
     facing = -dr.dot(normal, unit)
     normal = dr.mulsign(normal, facing)
     outgoing = dr.fma(normal, 2.0 * dr.abs(facing), unit)
     start = dr.fma(normal, _LIFT, dr.fma(towards, depth, pose.translation))
-    met = surface.cast(lit, start, outgoing, coherent=True)
+    met = surface.cast(lit, now, start, outgoing, coherent=True)
     there = surface.skin(lit, met)
     leaving = surface.radiance(lit, there, there.temperature_K, 0.0)
     return dr.select(met.valid, lit.air.through(leaving, met.depth), lit.air.sky_towards(outgoing))

@@ -18,6 +18,7 @@ from scenegen_render.camera import Camera
 from scenegen_render.trace import mirror, pixels, surface
 from scenegen_render.trace.lit import Lit
 from scenegen_render.trace.pose import DevicePose
+from scenegen_render.trace.troupe import Instant
 
 _LARGEST_GROUP = 4
 
@@ -73,15 +74,16 @@ class Sampler:
         lanes = np.arange(self.groups * camera.width_px * camera.height_px, dtype=np.uint32)
         self._in_pixel = backend.upload(lanes % np.uint32(self.groups))
 
-    def cast(self, lit: Lit, pose: DevicePose) -> Samples:
+    def cast(self, lit: Lit, now: Instant, pose: DevicePose) -> Samples:
         """Send every sub-sample and shade what it meets."""
         mi, dr = backend.modules()
         towards = pose.turn(self._plane.x, self._plane.y, mi.Float(1.0))
-        hit = surface.cast(lit, pose.translation, towards, coherent=True)
+        hit = surface.cast(lit, now, pose.translation, towards, coherent=True)
         on = surface.skin(lit, hit)
+        rest, normal = surface.at_rest(lit, now, hit, on)
         length = dr.norm(towards)
-        cosine = surface.cosine(on, towards / length)
-        temperature = surface.textured_K(lit, hit, on, hit.depth * self._metre_per_depth / cosine)
+        cosine = surface.cosine(normal, towards / length)
+        temperature = surface.textured_K(lit, rest, on, hit.depth * self._metre_per_depth / cosine)
         rho = mirror.reflectance(lit, hit, on, cosine)
         tau = lit.air.transmission(hit.depth * length)
         leaving = surface.radiance(lit, on, temperature, rho)
@@ -94,7 +96,7 @@ class Sampler:
             face=hit.face,
         )
 
-    def merge(self, lit: Lit, pose: DevicePose, samples: Samples) -> Any:
+    def merge(self, lit: Lit, now: Instant, pose: DevicePose, samples: Samples) -> Any:
         """Radiance of every group of sub-samples, mirror images and sky included [W m^-2 sr^-1]."""
         mi, dr = backend.modules()
         lane = dr.arange(mi.UInt, dr.width(self._in_pixel))
@@ -103,7 +105,9 @@ class Sampler:
         total += dr.if_stmt(
             args=(lane, *reflected),
             cond=sum(reflected) > 0.0,
-            true_fn=lambda lane, *shares: sum(shares) * self._mirror_image(lit, pose, samples, lane, shares),
+            true_fn=lambda lane, *shares: (
+                sum(shares) * self._mirror_image(lit, now, pose, samples, lane, shares)
+            ),
             false_fn=lambda lane, *shares: mi.Float(0.0),
             label="mirror",
         )
@@ -142,7 +146,13 @@ class Sampler:
         return lit.air.sky_towards(dr.normalize(self._towards(pose, missed)))
 
     def _mirror_image(
-        self, lit: Lit, pose: DevicePose, samples: Samples, lane: Any, shares: tuple[Any, ...]
+        self,
+        lit: Lit,
+        now: Instant,
+        pose: DevicePose,
+        samples: Samples,
+        lane: Any,
+        shares: tuple[Any, ...],
     ) -> Any:
         """Radiance that arrives at the mirror which the first mirror-like sub-sample of a group met."""
         mi, dr = backend.modules()
@@ -153,4 +163,4 @@ class Sampler:
         place = lane * self._group + first
         face = dr.gather(mi.UInt, samples.face, place)
         depth = dr.gather(mi.Float, samples.depth, place)
-        return mirror.incoming(lit, pose, self._towards(pose, chosen), face, depth)
+        return mirror.incoming(lit, now, pose, self._towards(pose, chosen), face, depth)

@@ -9,6 +9,7 @@ from typing import Any
 from scenegen_render import backend
 from scenegen_render.trace import noise
 from scenegen_render.trace.lit import Lit
+from scenegen_render.trace.troupe import Instant
 
 _OCTAVES = ((1.0, 1.0), (2.5, 0.63), (6.25, 0.4))
 """Frequency and amplitude: power falls as 1/frequency per octave, the -3 slope of real aerial LWIR spectra."""
@@ -27,7 +28,10 @@ class Hit:
     point : mitsuba.Vector3f
         World position [m].
     face : mitsuba.UInt
+        Of the world, and from `Lit.first_moving` on of the movers.
     uv : mitsuba.Point2f
+    moving : mitsuba.Bool
+        A mover was met.
     """
 
     valid: Any
@@ -35,6 +39,7 @@ class Hit:
     point: Any
     face: Any
     uv: Any
+    moving: Any
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,14 +68,23 @@ class Skin:
     mirror: Any
 
 
-def cast(lit: Lit, origin: Any, direction: Any, coherent: bool, active: Any = True) -> Hit:
-    """Trace rays against the world."""
+def cast(lit: Lit, now: Instant, origin: Any, direction: Any, coherent: bool) -> Hit:
+    """Trace rays against the world, then as far as they came against the movers of an instant."""
     mi, dr = backend.modules()
-    pi = lit.loaded.scene.ray_intersect_preliminary(
-        mi.Ray3f(origin, direction), coherent=coherent, active=active
+    ray = mi.Ray3f(origin, direction)
+    world = lit.loaded.scene.ray_intersect_preliminary(ray, coherent=coherent)
+    ray.maxt = world.t
+    mover = now.scene.ray_intersect_preliminary(ray, coherent=coherent)
+    moving = mover.is_valid()
+    t = dr.select(moving, mover.t, world.t)
+    return Hit(
+        valid=moving | world.is_valid(),
+        depth=t,
+        point=dr.fma(direction, t, origin),
+        face=dr.select(moving, mover.prim_index + lit.first_moving, world.prim_index),
+        uv=dr.select(moving, mover.prim_uv, world.prim_uv),
+        moving=moving,
     )
-    valid = pi.is_valid()
-    return Hit(valid, pi.t, dr.fma(direction, pi.t, origin), pi.prim_index, pi.prim_uv)
 
 
 def skin(lit: Lit, hit: Hit) -> Skin:
@@ -85,7 +99,7 @@ def skin(lit: Lit, hit: Hit) -> Skin:
         temperature_K=dr.fma(u, warm.y - warm.x, dr.fma(v, warm.z - warm.x, warm.x)),
         irradiance=dr.fma(u, shone.y - shone.x, dr.fma(v, shone.z - shone.x, shone.x)),
         what=what,
-        normal=unpack_normal(dr.reinterpret_array(mi.UInt, shone.w)),
+        normal=unpack_normal(dr.reinterpret_array(mi.UInt, shone.w)),  # of a mover: see `at_rest`
         emissivity=own.x,
         texture_K=own.y,
         texture_frequency=own.z,
@@ -93,17 +107,43 @@ def skin(lit: Lit, hit: Hit) -> Skin:
     )
 
 
-def textured_K(lit: Lit, hit: Hit, on: Skin, footprint_m: Any) -> Any:
+def at_rest(lit: Lit, now: Instant, hit: Hit, on: Skin) -> tuple[Any, Any]:
+    """Where a hit lies in the rest pose, which for the world is where it is, and its normal as it is now.
+
+    A mover's texture is fixed to its body: in the world it would swim over it.
+    """
+    mi, dr = backend.modules()
+
+    def on_mover(face: Any, u: Any, v: Any, point: Any, normal: Any) -> tuple[Any, Any]:
+        own = face - lit.first_moving
+        rest = (dr.gather(mi.Vector4f, lit.troupe.rest, own * 3 + k) for k in range(3))
+        a, b, c = (mi.Vector3f(corner.x, corner.y, corner.z) for corner in rest)
+        place = dr.fma(b - a, u, dr.fma(c - a, v, a))
+        return place, moving_normal(lit, now, own)
+
+    place, normal = dr.if_stmt(
+        args=(hit.face, hit.uv.x, hit.uv.y, hit.point, on.normal),
+        cond=hit.moving,
+        true_fn=on_mover,
+        false_fn=lambda face, u, v, point, normal: (point, normal),
+        label="mover",
+    )
+    return place, normal
+
+
+def textured_K(lit: Lit, rest: Any, on: Skin, footprint_m: Any) -> Any:
     """Kinetic temperature with the surface's small-scale variation, fixed to its rest position.
 
     Parameters
     ----------
+    rest : mitsuba.Vector3f
+        Position in the rest pose [m].
     footprint_m : mitsuba.Float
         Longest extent of the pixel on the surface. An octave vanishes between one and two lattice spacings, where it
         could only alias.
     """
     mi, dr = backend.modules()
-    place = noise.tilted(hit.point) * on.texture_frequency
+    place = noise.tilted(rest) * on.texture_frequency
     size = footprint_m * on.texture_frequency
     total = mi.Float(0.0)
     for k, (frequency, amplitude) in enumerate(_OCTAVES):
@@ -126,10 +166,10 @@ def radiance(lit: Lit, on: Skin, temperature_K: Any, mirror_reflectance: Any) ->
     return dr.fma(emissivity, lit.air.blackbody(temperature_K), reflected)
 
 
-def cosine(on: Skin, unit: Any) -> Any:
+def cosine(normal: Any, unit: Any) -> Any:
     """Cosine between a unit ray direction and the surface normal, either side; not below 0.01."""
     _, dr = backend.modules()
-    return dr.maximum(dr.abs(dr.dot(on.normal, unit)), 0.01)
+    return dr.maximum(dr.abs(dr.dot(normal, unit)), 0.01)
 
 
 def what(lit: Lit, face: Any, valid: Any) -> Any:
@@ -138,10 +178,28 @@ def what(lit: Lit, face: Any, valid: Any) -> Any:
     return dr.reinterpret_array(mi.UInt, dr.gather(mi.Float, lit.face, face * 8 + 3, valid))
 
 
-def face_normal(lit: Lit, face: Any) -> Any:
-    """Outward normal of faces."""
+def face_normal(lit: Lit, now: Instant, face: Any) -> Any:
+    """Outward normal of faces of the world or of movers."""
     mi, dr = backend.modules()
-    return unpack_normal(dr.gather(mi.UInt, lit.loaded.face_normal, face))
+    moving = face >= lit.first_moving
+    packed = dr.gather(mi.UInt, lit.loaded.face_normal, face, ~moving)
+    own = moving_normal(lit, now, dr.select(moving, face - lit.first_moving, 0))
+    return dr.select(moving, own, unpack_normal(packed))
+
+
+def moving_normal(lit: Lit, now: Instant, own: Any) -> Any:
+    """Outward normal of movers' faces, counted from the troupe's first."""
+    _, dr = backend.modules()
+    a, b, c = moving_corners(lit, now, own)
+    return dr.normalize(dr.cross(b - a, c - a))
+
+
+def moving_corners(lit: Lit, now: Instant, own: Any, active: Any = True) -> tuple[Any, Any, Any]:
+    """World positions of the corners of movers' faces, counted from the troupe's first [m]."""
+    mi, dr = backend.modules()
+    index = (dr.gather(mi.UInt, lit.troupe.faces, own * 3 + k, active) for k in range(3))
+    a, b, c = (dr.gather(mi.Vector3f, now.vertices, k, active) for k in index)
+    return a, b, c
 
 
 def unpack_normal(packed: Any) -> Any:

@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from jaxtyping import Bool, Float32, Shaped
+from jaxtyping import Bool, Float32, Float64, Shaped
 
 from scenegen.thermal_state import ThermalState
+from scenegen.world import World
 from scenegen_render import backend
 from scenegen_render.camera import Camera
 from scenegen_render.frame import Frame
 from scenegen_render.knobs import RenderKnobs
 from scenegen_render.scene import LoadedWorld
 from scenegen_render.trace import labels, pixels, surface
+from scenegen_render.trace.casting import choose
 from scenegen_render.trace.lit import Lit, light
 from scenegen_render.trace.pose import Pose, device_pose, relative
 from scenegen_render.trace.radiance import Sampler, Samples
+from scenegen_render.trace.troupe import Instant
 
 
 class Tracer:
@@ -41,12 +45,32 @@ class Tracer:
         self._centres = pixels.on_device(pixels.image_plane(camera, centre))
 
     def light(
-        self, loaded: LoadedWorld, state: ThermalState, irradiance: Float32[np.ndarray, "sites"]
+        self,
+        loaded: LoadedWorld,
+        state: ThermalState,
+        irradiance: Float32[np.ndarray, "sites"],
+        cast: Sequence[int] = (),
     ) -> Lit:
-        """Put one thermal state of a world on the device, in the camera's band; see `scenegen_render.trace.lit`."""
-        return light(loaded, state, irradiance, self.camera.band_um)
+        """Put one thermal state of a world on the device, in the camera's band; see `scenegen_render.trace.lit`.
 
-    def frame(self, lit: Lit, pose: Pose, next_pose: Pose, previous_pose: Pose | None = None) -> Frame:
+        Movers appear if they are in the `cast`, see `cast`.
+        """
+        return light(loaded, state, irradiance, self.camera.band_um, cast)
+
+    def cast(
+        self, world: World, poses: Float64[np.ndarray, "poses 4 4"], times_s: Float64[np.ndarray, "poses"]
+    ) -> tuple[int, ...]:
+        """Which movers of a world appear in a clip with these poses and world times."""
+        return choose(world.movers, self.camera, poses, times_s)
+
+    def frame(
+        self,
+        lit: Lit,
+        pose: Pose,
+        next_pose: Pose,
+        previous_pose: Pose | None = None,
+        times_s: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    ) -> Frame:
         """Trace one frame with all its layers.
 
         Parameters
@@ -56,6 +80,8 @@ class Tracer:
             `world_from_camera` of this frame and of the next one (for the flow).
         previous_pose : float64 (4, 4), optional
             Needed for backward flow.
+        times_s : (float, float, float)
+            World times of this frame, the next and the previous one: where the movers are.
 
         Raises
         ------
@@ -64,15 +90,16 @@ class Tracer:
         """
         _, dr = backend.modules()
         towards = device_pose(pose)
-        others = [next_pose]
+        now = lit.troupe.at(times_s[0])
+        others = [(next_pose, lit.troupe.at(times_s[1]))]
         if self.knobs.backward_flow:
             if previous_pose is None:
                 raise ValueError("backward flow needs the previous pose")
-            others.append(previous_pose)
-        samples = self._sampler.cast(lit, towards)
+            others.append((previous_pose, lit.troupe.at(times_s[2])))
+        samples = self._sampler.cast(lit, now, towards)
         dr.eval(samples)
-        layers = self._labels(lit, pose, samples, others)
-        radiance = self._sampler.merge(lit, towards, samples)
+        layers = self._labels(lit, now, pose, samples, others)
+        radiance = self._sampler.merge(lit, now, towards, samples)
         if self._sampler.groups > 1:
             dr.eval(radiance, layers)
         layers["radiance"] = self._sampler.pixels(radiance)
@@ -87,30 +114,35 @@ class Tracer:
         dr.scatter(image, lanes, self._pixel, mode=dr.ReduceMode.Permute)
         return image
 
-    def _labels(self, lit: Lit, pose: Pose, samples: Samples, others: list[Pose]) -> dict[str, Any]:
+    def _labels(
+        self, lit: Lit, now: Instant, pose: Pose, samples: Samples, others: list[tuple[Pose, Instant]]
+    ) -> dict[str, Any]:
         """Layers of the ray through each pixel centre, which is the first sub-sample."""
         mi, dr = backend.modules()
         centre = dr.arange(mi.UInt, dr.width(self._centres)) * self._sampler.count
         valid = ~dr.isinf(dr.gather(mi.Float, samples.depth, centre))
         face = dr.gather(mi.UInt, samples.face, centre)
         what = surface.what(lit, face, valid)
-        corner, along, up = labels.triangle(lit, face, valid)
-        normal = dr.cross(along, up)
+        on = labels.footing(lit, now, face, valid)
+        normal = dr.cross(on.along, on.up)
         x, y = mi.Float64(self._centres.x), mi.Float64(self._centres.y)
-        depth = mi.Float(labels.planar_depth(device_pose(pose, double=True), x, y, corner, normal))
+        exact = device_pose(pose, double=True)
+        depth = mi.Float(labels.planar_depth(exact, x, y, on.corner, normal))
         layers = {
             "depth": dr.select(valid, depth, dr.inf),
             "temperature": dr.gather(mi.Float, samples.temperature_K, centre),
             "what": what >> 16 | dr.gather(mi.UInt, lit.material, what & 0xFFFF, valid) << 16,
-            "instance": dr.gather(mi.UInt, lit.loaded.face_object, face, valid),
+            "instance": dr.gather(mi.UInt, lit.object, face, valid),
         }
-        for name, other in zip(("flow", "flow_back"), others, strict=False):
+        for name, (other, then) in zip(("flow", "flow_back"), others, strict=False):
             moved = labels.moved(
                 lit,
+                then,
                 self.camera,
                 self._centres,
                 depth,
                 valid,
+                labels.shift(lit, now, then, on, exact, x, y, depth),
                 device_pose(relative(other, pose)),
                 device_pose(other),
             )

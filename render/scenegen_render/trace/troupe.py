@@ -1,0 +1,130 @@
+"""The movers of one clip on the device: a second, small scene, rebuilt for every instant from vertices of that time.
+
+One scene with everything would be rebuilt as a whole, a hundred times as dear. The static world is traced first, the
+movers as far as its hit. Movers' faces are numbered on from the world's, so that all tables are one. The first
+faces of a troupe are points far below the ground that no ray can hit: a scene is never empty, and a clip without
+movers runs the same kernels.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from jaxtyping import Float32, UInt32
+
+from scenegen.movers.company import Company
+from scenegen_render import backend
+
+_UNSEEN = 2
+"""Faces nobody sees; two, since tables of one row are compiled differently."""
+_NOWHERE = np.full((3 * _UNSEEN, 3), -1e3, np.float32)
+_KEPT = 3
+"""Instants kept: previous, this, next."""
+
+
+@dataclass(frozen=True, eq=False)
+class Instant:
+    """Where the movers are at one time.
+
+    Attributes
+    ----------
+    scene : mitsuba.Scene
+    vertices : mitsuba.Float, 3 per vertex
+        World positions [m].
+    """
+
+    scene: Any
+    vertices: Any
+
+
+class Troupe:
+    """Chosen movers of a world.
+
+    Parameters
+    ----------
+    company : Company
+
+    Attributes
+    ----------
+    company : Company
+    faces : mitsuba.UInt, 3 per face
+        Indices into the vertices of an instant.
+    rest : mitsuba.Float, 12 per face
+        Corners in the rest pose [m], four floats each; shifted by a vector of the mover's own, so that no two movers
+        share a pattern of texture.
+    """
+
+    def __init__(self, company: Company) -> None:
+        self.company = company
+        unseen = np.arange(3 * _UNSEEN).reshape(-1, 3)
+        faces = np.concatenate([unseen, company.body.faces + 3 * _UNSEEN]).astype(np.uint32)
+        self.faces = backend.upload(faces)
+        self.rest = backend.upload(_rest_corners(company))
+        self._stages: list[_Stage] = []
+
+    def at(self, time_s: float) -> Instant:
+        """The movers at one time; the last few are kept."""
+        known = [stage for stage in self._stages if stage.time_s == time_s]
+        if known:
+            stage = known[0]
+            self._stages.remove(stage)
+        else:
+            vertices = np.concatenate([_NOWHERE, self.company.vertices(time_s).astype(np.float32)])
+            full = len(self._stages) == _KEPT
+            stage = self._stages.pop(0) if full else _Stage(vertices, self.faces)
+            stage.move(vertices, time_s)
+        self._stages.append(stage)  # the last used last: the first may be overwritten
+        return stage.instant
+
+
+class _Stage:
+    """One small scene, used again and again."""
+
+    def __init__(self, vertices: Float32[np.ndarray, "vertices 3"], faces: Any) -> None:
+        mi, dr = backend.modules()
+        mesh = mi.Mesh("movers", vertex_count=len(vertices), face_count=dr.width(faces) // 3)
+        parameters = mi.traverse(mesh)
+        parameters["vertex_positions"] = backend.upload(vertices)
+        parameters["faces"] = faces
+        parameters.update()
+        description = {"type": "scene", "embree_use_robust_intersections": True, "movers": mesh}
+        self._scene = mi.load_dict(description, optimize=False, parallel=False)
+        self._parameters = mi.traverse(self._scene)
+        self.time_s = float("nan")
+
+    def move(self, vertices: Float32[np.ndarray, "vertices 3"], time_s: float) -> None:
+        """Put the vertices where they are at a time and rebuild the acceleration structure."""
+        on_device = backend.upload(vertices)
+        self._parameters["movers.vertex_positions"] = on_device
+        self._parameters.update()
+        self.time_s, self.instant = time_s, Instant(self._scene, on_device)
+
+
+def face_record(company: Company, first_site: int) -> UInt32[np.ndarray, "faces 4"]:
+    """Sites of the corners (counted on from the world's) and ``surface | semantic << 16`` of a troupe's faces."""
+    body = company.body
+    record = np.zeros((_UNSEEN + len(body.faces), 4), np.uint32)
+    record[_UNSEEN:, :3] = body.corner_site + first_site
+    record[_UNSEEN:, 3] = body.surface.astype(np.uint32) | body.semantic.astype(np.uint32) << np.uint32(16)
+    return record
+
+
+def face_object(company: Company) -> UInt32[np.ndarray, "faces"]:
+    """Instance id of each face of a troupe."""
+    return np.concatenate([np.ones(_UNSEEN, np.int64), company.body.object]).astype(np.uint32)
+
+
+def _rest_corners(company: Company) -> Float32[np.ndarray, "corners 4"]:
+    body = company.body
+    # Plastic-number sequence (Roberts 2018): evenly spread shifts for consecutive ids.
+    shift = np.array([[m.object] for m in company.movers]).reshape(-1, 1) * _STEP % 1.0 * _SHIFT_M
+    place = body.vertices + shift[company.owner]
+    corners = np.zeros((3 * (_UNSEEN + len(body.faces)), 4), np.float32)
+    corners[3 * _UNSEEN :, :3] = place[body.faces].reshape(-1, 3)
+    return corners
+
+
+_STEP = np.array([0.8191725133961645, 0.6710436067037893, 0.5497004779019703])
+_SHIFT_M = 200.0
