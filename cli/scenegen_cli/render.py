@@ -9,6 +9,7 @@ from typing import Any
 
 from scenegen.foundation.errors import InputError
 from scenegen.foundation.strict_yaml import read_mapping
+from scenegen.maps.own_scene.own_scene import describe
 from scenegen_cli.console import say, say_json
 from scenegen_cli.making import make, plan_in_words, processes
 from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
@@ -52,6 +53,8 @@ def run(arguments: Sequence[str]) -> int:
     if command.pairs == 0:
         raise InputError("--pairs is missing or 0: say how many pairs to make, such as --pairs 512")
     recipe, pairs = settle_pairs(recipe, command.pairs)
+    for scene in recipe.scenes.values():
+        describe(scene)  # what is wrong with a scene is said now, not when its first clip is due
     out = command.out or Path("-".join(("scenegen", *recipe.map)))
     job = Job(
         recipe=recipe,

@@ -12,6 +12,11 @@ _MAP = re.compile(r"[a-z][a-z0-9_]{0,23}")
 _BOUNDS = (("ordinal", 0, 2**32 - 1), ("world", 0, 99_999), ("clip", 0, 999), ("pairs", 1, 9_998))
 
 
+def is_map_name(name: str) -> bool:
+    """Whether paths and keys can be made of it: lower-case letters, digits, underscores, 24 at most."""
+    return _MAP.fullmatch(name) is not None
+
+
 @dataclass(frozen=True, order=True)
 class ClipJob:
     """One clip of the plan.
@@ -43,7 +48,7 @@ class ClipJob:
     pairs: int
 
     def __post_init__(self) -> None:
-        if not (isinstance(self.map, str) and _MAP.fullmatch(self.map)):
+        if not (isinstance(self.map, str) and is_map_name(self.map)):
             raise ValueError(f"'{self.map}' cannot be the name of a map")
         if self.split not in SPLITS:
             raise ValueError(f"'{self.split}' is not a split")

@@ -8,12 +8,15 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, Field, field_validator
 
 from scenegen.climate.knobs import ClimateKnobs
-from scenegen.foundation.errors import InputError
+from scenegen.foundation.errors import InputError, nearest
 from scenegen.foundation.section import Count, Section
 from scenegen.maps.city.knobs import CityKnobs
-from scenegen.maps.registry import MAPS, map_family
+from scenegen.maps.own_scene.knobs import OwnScene
+from scenegen.maps.registry import MAPS
+from scenegen_datasets.job import is_map_name
 from scenegen_datasets.layers import DEFAULT_LAYERS, check_layers
 from scenegen_datasets.resolve import Source, merge, resolve
+from scenegen_datasets.scenes import identified, name_scenes
 from scenegen_flythrough.knobs import FlightKnobs
 from scenegen_render.camera_knobs import CameraKnobs, preset
 from scenegen_render.exposure.knobs import ExposureKnobs
@@ -41,8 +44,10 @@ class Recipe(Section):
 
     seed: Annotated[Count, Field(ge=0, lt=2**63)] = 0
     """Root of all randomness."""
+    scenes: dict[str, OwnScene] = Field(default_factory=dict)
+    """Scenes of your own by name; a path among the maps enters itself here."""
     map: Names = ("city",)
-    """Map families; several take turns, world by world."""
+    """Map families, own scenes by name or path; several take turns, world by world."""
     clips_per_world: Annotated[Count, Field(ge=1, le=1000)] = 8
     """Flights through one world, each with its own weather and hour."""
     pairs_per_clip: Annotated[Count, Field(ge=1, le=9000)] = 64
@@ -59,13 +64,25 @@ class Recipe(Section):
 
     @field_validator("map")
     @classmethod
-    def _known_maps(cls, value: tuple[str, ...]) -> tuple[str, ...]:
+    def _known_maps(cls, value: tuple[str, ...], info: Any) -> tuple[str, ...]:
+        known = {*MAPS, *info.data.get("scenes", ())}
         if not value:
-            raise ValueError(f"name at least one map; known: {', '.join(MAPS)}")
+            raise ValueError(f"name at least one map; known: {', '.join(sorted(known))}")
         if len(set(value)) < len(value):
             raise ValueError("names a map twice")
         for name in value:
-            map_family(name)
+            if name not in known:
+                raise ValueError(f"unknown map '{name}'{nearest(name, known)}")
+        return value
+
+    @field_validator("scenes")
+    @classmethod
+    def _scene_names(cls, value: dict[str, OwnScene]) -> dict[str, OwnScene]:
+        for name in value:
+            if name in MAPS or not is_map_name(name):
+                raise ValueError(
+                    f"'{name}' cannot be the name of a scene: lower-case letters, digits, underscores"
+                )
         return value
 
     @field_validator("layers")
@@ -89,15 +106,20 @@ class Recipe(Section):
         return self.render.model_copy(update=wanted)
 
     def map_knobs(self, name: str) -> Section:
-        """Section of one map family."""
-        knobs = getattr(self, name)
+        """Section of one map family, or the files of an own scene."""
+        knobs = self.scenes.get(name) or getattr(self, name)
         assert isinstance(knobs, Section)
         return knobs
 
     def canonical(self) -> dict[str, Any]:
-        """Plain data of everything that decides samples; sections of maps that are not used are left out."""
+        """Plain data of everything that decides samples; sections of maps that are not used are left out.
+
+        Own scenes enter by their content, wherever their files lie.
+        """
         unused = {name for name in MAPS if name not in self.map}
-        return self.model_dump(mode="json", exclude=unused)
+        plain = self.model_dump(mode="json", exclude={*unused, "scenes"})
+        used = {name: {"sha256": scene.sha256} for name, scene in self.scenes.items() if name in self.map}
+        return {**plain, "scenes": used} if used else plain
 
 
 def resolve_recipe(sources: list[Source]) -> Recipe:
@@ -120,7 +142,12 @@ def resolve_recipe(sources: list[Source]) -> Recipe:
         chosen = preset(name)
         base = {"camera": dict(chosen.camera), "sensor": dict(chosen.sensor)}
         sources = [Source(f"camera preset {name}", base), *sources]
-    return resolve(Recipe, sources)
+    recipe = resolve(Recipe, name_scenes(sources))
+    return (
+        recipe.model_copy(update={"scenes": identified(recipe.scenes, recipe.map)})
+        if recipe.scenes
+        else recipe
+    )
 
 
 def settle_pairs(recipe: Recipe, pairs: int) -> tuple[Recipe, int]:

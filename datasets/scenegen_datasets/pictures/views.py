@@ -129,7 +129,7 @@ def bird_pose(world: World) -> Pose:
     """From the south-west, high enough that the whole flight box is in the picture."""
     middle = _middle(world)
     pitch = math.radians(_BIRD_PITCH_DEG)
-    distance = 1.05 * _half_size_m(world) / math.tan(math.radians(_BIRD_FOV_DEG) / 2)
+    distance = 1.2 * _half_size_m(world) / math.tan(math.radians(_BIRD_FOV_DEG) / 2)
     away = np.array([-math.cos(pitch) / math.sqrt(2), -math.cos(pitch) / math.sqrt(2), math.sin(pitch)])
     return looking_at(middle + distance * away, middle)
 

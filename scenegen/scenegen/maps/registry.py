@@ -14,6 +14,8 @@ from scenegen.foundation.errors import InputError, nearest
 from scenegen.foundation.section import Section
 from scenegen.maps.city.city import build_city
 from scenegen.maps.city.knobs import CityKnobs
+from scenegen.maps.own_scene.knobs import OwnScene
+from scenegen.maps.own_scene.own_scene import build_own_scene
 from scenegen.world import World
 
 
@@ -69,9 +71,9 @@ def build_world(map: str, knobs: Section, season: Season, rng: np.random.Generat
     Parameters
     ----------
     map : str
-        Name of the family.
+        Name of the family, or of an own scene.
     knobs : Section
-        Of the family's own class.
+        Of the family's own class; `OwnScene` for an own scene.
     season : Season
         Decides what is in leaf; the sun comes later.
     rng : numpy.random.Generator
@@ -82,6 +84,8 @@ def build_world(map: str, knobs: Section, season: Season, rng: np.random.Generat
     InputError
         If the map is unknown or the knobs belong to another family.
     """
+    if isinstance(knobs, OwnScene):
+        return build_own_scene(map, knobs, season, rng)
     family = map_family(map)
     if not isinstance(knobs, family.knobs):
         raise InputError(f"map '{map}' takes {family.knobs.__name__}, not {type(knobs).__name__}")
