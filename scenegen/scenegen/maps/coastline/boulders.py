@@ -36,7 +36,9 @@ def boulder(rng: np.random.Generator, semantic: int, splits: int = 2, planes: in
 def block(rng: np.random.Generator, semantic: int) -> Template:
     """A cube of concrete with chamfered edges, tumbled, of unit half side. Slot: 0."""
     corner = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], np.float64)
-    points = np.concatenate([corner * s for s in (np.array([1, 1, 0.82]), np.array([1, 0.82, 1]), np.array([0.82, 1, 1]))])
+    points = np.concatenate(
+        [corner * s for s in (np.array([1, 1, 0.82]), np.array([1, 0.82, 1]), np.array([0.82, 1, 1]))]
+    )
     q = rng.normal(size=4)
     w, x, y, z = q / np.linalg.norm(q)
     turn = np.array(

@@ -87,7 +87,9 @@ class _Strips:
         rocky = np.clip((coast.cliff(s) - 0.2) / 0.4, 0.0, 1.0)  # headlands taper out on the sand
         core, everywhere = beach + (0.35 + 0.25 * np.sin(s / 5.3)) * (brow - beach), np.ones(len(s), bool)
         top, base = core + rocky * (brow - core), core + rocky**0.7 * (self.foot - core)
-        middle = beach + np.clip(0.45 + 0.2 * np.sin(s / 17.0) + 0.12 * np.sin(s / 6.1), 0.2, 0.8) * (back - beach)
+        middle = beach + np.clip(0.45 + 0.2 * np.sin(s / 17.0) + 0.12 * np.sin(s / 6.1), 0.2, 0.8) * (
+            back - beach
+        )
         sand, stone = pick("sand_dry_quartz", rng), pick(rock, rng)
         bare = brow + 1.6 + np.sin(s / 9.0) + 0.6 * np.sin(s / 3.7)
         table = (
@@ -122,7 +124,10 @@ class _Strips:
         keep = first_come(blobs)
         kind = seaward[good][keep].astype(int).tolist()
         labels = ((sand, Semantic.SAND, owner + 1), (grass, Semantic.GRASS, owner))
-        return [Region(b, labels[k][0], int(labels[k][1]), labels[k][2]) for b, k in zip(blobs[keep], kind, strict=True)]
+        return [
+            Region(b, labels[k][0], int(labels[k][1]), labels[k][2])
+            for b, k in zip(blobs[keep], kind, strict=True)
+        ]
 
 
 def _blobs(centre: np.ndarray, radius: np.ndarray, rng: np.random.Generator) -> np.ndarray:
@@ -136,7 +141,9 @@ def _blobs(centre: np.ndarray, radius: np.ndarray, rng: np.random.Generator) -> 
 def _fields(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -> list[Region]:
     """Fields and meadows behind the road, larger with distance."""
     coast, count = shop.coast, 110
-    reach = np.concatenate([rng.uniform(45.0, 420.0, 30), 420.0 + 7000.0 * rng.uniform(0.0, 1.0, count - 30) ** 1.6])
+    reach = np.concatenate(
+        [rng.uniform(45.0, 420.0, 30), 420.0 + 7000.0 * rng.uniform(0.0, 1.0, count - 30) ** 1.6]
+    )
     s = rng.uniform(-1.0, 1.0, count) * (1.2 * coast.half_m + 0.9 * reach)
     size = np.clip(0.16 * reach + rng.uniform(26.0, 60.0, count), 30.0, 600.0)
     centre = coast.frame.world(np.column_stack([s, coast.road(s) + reach]))
@@ -178,7 +185,9 @@ def _roads(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -> lis
 def _gateway(layout: Layout) -> shapely.Polygon:
     """The drive from the road into the car park."""
     middle = shapely.get_coordinates(layout.car_park.centroid)[0]
-    nearest = shapely.get_coordinates(layout.road.interpolate(layout.road.project(layout.car_park.centroid)))[0]
+    nearest = shapely.get_coordinates(layout.road.interpolate(layout.road.project(layout.car_park.centroid)))[
+        0
+    ]
     return shapely.LineString([nearest, middle]).buffer(3.4, cap_style="flat")
 
 
@@ -195,7 +204,13 @@ def _dashes(layout: Layout, shop: CoastWorkshop) -> np.ndarray:
     x = np.arange(-20.4, 20.5, 2.72)
     for y0, y1 in ((3.2, 7.9), (-7.9, -3.2)):
         use = x[np.abs(x) > 4.5] if y0 < 0 else x
-        rows.append(_bars(np.column_stack([use, 0 * use + y0]) @ turn + middle, np.column_stack([use, 0 * use + y1]) @ turn + middle, 0.1))
+        rows.append(
+            _bars(
+                np.column_stack([use, 0 * use + y0]) @ turn + middle,
+                np.column_stack([use, 0 * use + y1]) @ turn + middle,
+                0.1,
+            )
+        )
     return np.asarray(shapely.polygons(np.concatenate(rows)))
 
 

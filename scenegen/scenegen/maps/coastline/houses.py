@@ -41,7 +41,10 @@ def draw_houses(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -
     good = np.flatnonzero(level & shop.coast.inside(xy, 22.0) & _dry(ring, shop))
     free = good[shop.claims.free(shapely.buffer(shapes[good], _GARDEN_M, join_style="mitre"))]
     chosen = free[shop.claims.take(shapely.buffer(shapes[free], _GARDEN_M, join_style="mitre"))][:wanted]
-    return [_house(ring[k, :4], float(ground[k].max()), float(ground[k].min()), bool(inn[k]), shop, rng) for k in chosen]
+    return [
+        _house(ring[k, :4], float(ground[k].max()), float(ground[k].min()), bool(inn[k]), shop, rng)
+        for k in chosen
+    ]
 
 
 def _dry(ring: np.ndarray, shop: CoastWorkshop) -> np.ndarray:
@@ -60,6 +63,8 @@ def _house(
     style = draw_style(kind, form, shop.palette, rng)
     storeys = int(rng.integers(2, 4)) if inn else int(rng.choice([1, 1, 2]))
     floor = high_m + _STEP_M
-    rings = (np.asarray(shapely.get_coordinates(shapely.orient_polygons(shapely.Polygon(ring)).exterior)[:-1]),)
+    rings = (
+        np.asarray(shapely.get_coordinates(shapely.orient_polygons(shapely.Polygon(ring)).exterior)[:-1]),
+    )
     volume = Volume(rings, floor, storeys, floor - low_m + _BELOW_M, form)
     return Building(kind, shop.builder.new_objects(), style, (volume,), outline_of(rings))

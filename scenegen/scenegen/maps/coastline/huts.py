@@ -23,7 +23,9 @@ def hut(length_m: float = 3.0, width_m: float = 2.4, eaves_m: float = 2.1, ridge
     model, x, y = Modeller(), length_m / 2, width_m / 2
     model.box((-x, -y, -_SINK_M), (x, y, eaves_m), WALL, Semantic.WALL, covered=True)
     for side in (-1.0, 1.0):
-        base = np.array([[x * side, -y * side, eaves_m], [x * side, y * side, eaves_m], [x * side, 0, ridge_m]])
+        base = np.array(
+            [[x * side, -y * side, eaves_m], [x * side, y * side, eaves_m], [x * side, 0, ridge_m]]
+        )
         model.quads(np.concatenate([base, base[2:]])[None], WALL, Semantic.WALL)
     out, slope = 0.22, (ridge_m - eaves_m) / y
     lip, edge = eaves_m - slope * out, x + 0.25
@@ -37,9 +39,15 @@ def hut(length_m: float = 3.0, width_m: float = 2.4, eaves_m: float = 2.1, ridge
         up = np.array([0.0, 0.0, 0.07])
         model.quads(np.array([[a, b, b + up, a + up] for a, b in rim]), ROOF, Semantic.ROOF)
     front = x + 0.02
-    model.quads(np.array([[[front, -0.4, 0.1], [front, 0.4, 0.1], [front, 0.4, 1.95], [front, -0.4, 1.95]]]), DOOR, Semantic.DOOR)
     model.quads(
-        np.array([[[0.35, -y - 0.02, 1.1], [0.95, -y - 0.02, 1.1], [0.95, -y - 0.02, 1.7], [0.35, -y - 0.02, 1.7]]]),
+        np.array([[[front, -0.4, 0.1], [front, 0.4, 0.1], [front, 0.4, 1.95], [front, -0.4, 1.95]]]),
+        DOOR,
+        Semantic.DOOR,
+    )
+    model.quads(
+        np.array(
+            [[[0.35, -y - 0.02, 1.1], [0.95, -y - 0.02, 1.1], [0.95, -y - 0.02, 1.7], [0.35, -y - 0.02, 1.7]]]
+        ),
         GLASS,
         Semantic.WINDOW,
     )
@@ -55,14 +63,18 @@ def draw_huts(shop: CoastWorkshop, rng: np.random.Generator) -> np.ndarray:
     xy = coast.plan(along, q)
     good = (coast.cliff(along) < 0.12) & coast.inside(xy, 25.0) & (q - coast.wet(along) > 8.0)
     good &= np.sin(along / 31.0 + rng.uniform(0, 6)) > -0.2
-    step = coast.plan(along + 2.0, coast.beach(along + 2.0)) - coast.plan(along - 2.0, coast.beach(along - 2.0))
+    step = coast.plan(along + 2.0, coast.beach(along + 2.0)) - coast.plan(
+        along - 2.0, coast.beach(along - 2.0)
+    )
     heading = np.arctan2(step[:, 1], step[:, 0]) - 0.5 * np.pi + rng.normal(0.0, 0.03, len(along))
     rows = np.column_stack([xy, heading])[good]
     shapes = rectangles(rows[:, :2], np.full(len(rows), 3.6), np.full(len(rows), 3.0), rows[:, 2])
     return np.asarray(rows[shop.claims.take(shapes, 0.4)][:wanted])
 
 
-def build_huts(rows: np.ndarray, height_m: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:
+def build_huts(
+    rows: np.ndarray, height_m: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator
+) -> list[Part]:
     """Huts at given places (x, y, rad) and heights [m] of their floor, in three sizes."""
     count = len(rows)
     owner = shop.builder.new_objects(count) + np.arange(count)

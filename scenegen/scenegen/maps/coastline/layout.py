@@ -58,9 +58,7 @@ class Layout:
     mound: Mound
 
 
-def lay_out(
-    land: CoastRelief, knobs: CoastlineKnobs, rng: np.random.Generator
-) -> tuple[Layout, CoastRelief]:
+def lay_out(land: CoastRelief, knobs: CoastlineKnobs, rng: np.random.Generator) -> tuple[Layout, CoastRelief]:
     """Draw the layout and level the land for it."""
     coast = land.coast
     spots, pier_rng, wall_rng, light_rng = rng.spawn(4)
@@ -68,7 +66,9 @@ def lay_out(
     s = _stations_inside(coast)
     pier_s = _somewhere(s, coast.cliff(s), spots)
     pier = _pier(coast, pier_s, pier_rng.uniform(*knobs.pier_length_m), pier_rng)
-    mound = _breakwater(coast, _beside(s, pier_s, coast, spots), pier_s, wall_rng.uniform(*knobs.breakwater_length_m))
+    mound = _breakwater(
+        coast, _beside(s, pier_s, coast, spots), pier_s, wall_rng.uniform(*knobs.breakwater_length_m)
+    )
     relief = replace(relief, mounds=(mound,))
     free = np.abs(s - pier_s) > min(70.0, 0.3 * np.ptp(s))
     light_s = float(s[free][int(np.argmax(coast.cliff_m(s[free]) + light_rng.uniform(0.0, 2.0, free.sum())))])
@@ -145,7 +145,9 @@ def _breakwater(coast: Coast, root_s: float, pier_s: float, length_m: float) -> 
 
 def _car_park(coast: Coast, s: float) -> tuple[shapely.Polygon, float]:
     """Beside the road, on its landward side."""
-    ends = coast.frame.world(np.column_stack([s + np.array([-10.0, 10.0]), coast.road(s + np.array([-10.0, 10.0]))]))
+    ends = coast.frame.world(
+        np.column_stack([s + np.array([-10.0, 10.0]), coast.road(s + np.array([-10.0, 10.0]))])
+    )
     ahead = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
     inland = np.array([-ahead[1], ahead[0]])
     centre = ends.mean(axis=0) + (ROAD_HALF_M + 2.2 + _CAR_PARK_M[1] / 2) * inland

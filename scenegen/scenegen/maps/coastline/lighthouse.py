@@ -49,7 +49,16 @@ def lighthouse(height_m: float, foot_m: float, top_m: float, bands: int) -> Temp
 def _openings(model: Modeller, height_m: float, foot_m: float, top_m: float) -> None:
     """A door at the foot, windows up the stair on alternating sides; frames stand proud of the wall."""
     model.box((foot_m - 0.35, -0.75, 0.0), (foot_m + 0.12, 0.75, 2.6), WALL, Semantic.WALL)
-    front = np.array([[[foot_m + 0.14, -0.5, 0.1], [foot_m + 0.14, 0.5, 0.1], [foot_m + 0.14, 0.5, 2.3], [foot_m + 0.14, -0.5, 2.3]]])
+    front = np.array(
+        [
+            [
+                [foot_m + 0.14, -0.5, 0.1],
+                [foot_m + 0.14, 0.5, 0.1],
+                [foot_m + 0.14, 0.5, 2.3],
+                [foot_m + 0.14, -0.5, 2.3],
+            ]
+        ]
+    )
     model.quads(front, DOOR, Semantic.DOOR)
     for k, z in enumerate(np.arange(4.2, height_m - 2.0, 3.4)):
         r = foot_m + (top_m - foot_m) * (z / height_m) ** 0.85
@@ -99,10 +108,20 @@ def _lantern(model: Modeller, height_m: float, top_m: float) -> None:
         edge = np.array([(r + 0.02) * np.cos(angle), (r + 0.02) * np.sin(angle), 0.0])
         up = np.array([0.0, 0.0, 1.0])
         model.tube(edge + z1 * up, edge + z2 * up, 0.04, 0.04, METAL, Semantic.WALL, sides=4)
-    dome = [(r + 0.3, z2), (r + 0.3, z2 + 0.12), (0.85 * r, z2 + 0.7), (0.5 * r, z2 + 1.15), (0.15, z2 + 1.35)]
+    dome = [
+        (r + 0.3, z2),
+        (r + 0.3, z2 + 0.12),
+        (0.85 * r, z2 + 0.7),
+        (0.5 * r, z2 + 1.15),
+        (0.15, z2 + 1.35),
+    ]
     revolve(model, dome, (METAL,) * 4, Semantic.ROOF, sides=sides * 2)
-    revolve(model, [(0.15, z2 + 1.35), (0.28, z2 + 1.6), (0.02, z2 + 1.9)], (METAL, METAL), Semantic.ROOF, sides=8)
-    model.tube(np.array([0, 0, z2 + 1.85]), np.array([0, 0, z2 + 3.6]), 0.03, 0.012, METAL, Semantic.POLE, sides=4)
+    revolve(
+        model, [(0.15, z2 + 1.35), (0.28, z2 + 1.6), (0.02, z2 + 1.9)], (METAL, METAL), Semantic.ROOF, sides=8
+    )
+    model.tube(
+        np.array([0, 0, z2 + 1.85]), np.array([0, 0, z2 + 3.6]), 0.03, 0.012, METAL, Semantic.POLE, sides=4
+    )
 
 
 def build_lighthouse(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -> Part:

@@ -42,7 +42,10 @@ def bay(length_m: float, width_m: float, sides: tuple[bool, bool, bool]) -> Temp
     under = np.column_stack([edge, np.full(4, low)])[::-1]
     model.quads(under[None], TIMBER, Semantic.PIER)
     for a, b in ((0, 1), (1, 2), (2, 3), (3, 0)):
-        lower, upper = np.column_stack([edge[[a, b]], [low, low]]), np.column_stack([edge[[b, a]], [0.0, 0.0]])
+        lower, upper = (
+            np.column_stack([edge[[a, b]], [low, low]]),
+            np.column_stack([edge[[b, a]], [0.0, 0.0]]),
+        )
         model.quads(np.concatenate([lower, upper])[None], TIMBER, Semantic.PIER)
     for y in (-0.8 * half, 0.0, 0.8 * half):
         model.box((0.0, y - 0.08, -0.45), (length_m, y + 0.08, low), TIMBER, Semantic.PIER, covered=True)

@@ -20,6 +20,7 @@ ROAD_HALF_M = 3.4
 _VERGE_M, _BATTER_M = 1.8, 11.0
 _DEEPEST_M = 9.0
 _DRY_SLOPE = 0.022
+_LEDGE_M = 0.55
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,13 +114,28 @@ class CoastRelief:
         inland = 1 - np.exp(-behind / 75.0)
         rise = self._face(s, q, beach, brow, cliff, fade) * coast.cliff_m(s)
         upland = rise + inland * (coast.upland_m(s) - coast.cliff_m(s))
-        land = upland + self._dune(s, q, xy, fade) + inland * (1.5 + fade * self.rolling(xy))
+        land = (
+            upland
+            + self._dune(s, q, xy, fade)
+            + self._ledges(s, q, beach, cliff, fade)
+            + inland * (1.5 + fade * self.rolling(xy))
+        )
         far = np.clip((q - 450.0) / 2200.0, 0.0, 1.0) ** 1.3
         land = land + far * self.hills_m * (1.1 + self.hills(xy))
-        return np.where(q < 0.0, bed, np.maximum(strand + land, np.minimum(strand, 0.9)))
+        return np.where(
+            q < 0.0,
+            bed + self._ledges(s, q, beach, cliff, fade),
+            np.maximum(strand + land, np.minimum(strand, 0.9) - 0.4 * cliff),
+        )
 
     def _face(
-        self, s: np.ndarray, q: np.ndarray, beach: np.ndarray, brow: np.ndarray, cliff: np.ndarray, fade: np.ndarray
+        self,
+        s: np.ndarray,
+        q: np.ndarray,
+        beach: np.ndarray,
+        brow: np.ndarray,
+        cliff: np.ndarray,
+        fade: np.ndarray,
     ) -> np.ndarray:
         """Rise of the cliff, 0 at its foot to 1 at its brow: buttresses, gullies, ledges."""
         run = brow - beach
@@ -128,8 +144,24 @@ class CoastRelief:
         push, steep = np.zeros(len(s)), inner * cliff * fade > 0.0
         push[steep] = self.face(np.column_stack([s, 2.5 * q])[steep])
         x = x + fade * cliff * inner * push * np.minimum(0.3, 2.2 / run)
-        x = np.clip(x + 0.035 * cliff * np.sin(6 * np.pi * x + 0.05 * s) * inner, 0.0, 1.0)
+        x = np.clip(
+            x
+            + cliff
+            * (0.03 * np.sin(6 * np.pi * x + 0.05 * s) + 0.018 * np.sin(17 * np.pi * x - 0.03 * s))
+            * inner,
+            0.0,
+            1.0,
+        )
         return np.asarray(cliff * x + (1 - cliff) * x * x * (3 - 2 * x))
+
+    def _ledges(
+        self, s: np.ndarray, q: np.ndarray, beach: np.ndarray, cliff: np.ndarray, fade: np.ndarray
+    ) -> np.ndarray:
+        """Rough rock below the cliffs, awash in places."""
+        share = np.clip(np.minimum(q + 6.0, beach + 2.0 - q) / 4.0, 0.0, 1.0) * cliff**2 * fade
+        rough, rocky = np.zeros(len(s)), share > 0.0
+        rough[rocky] = self.face(np.column_stack([s, 0.8 * q])[rocky] + 40.0)
+        return np.asarray(_LEDGE_M * share * rough)
 
     def _dune(self, s: np.ndarray, q: np.ndarray, xy: np.ndarray, fade: np.ndarray) -> np.ndarray:
         """Dune ridge with a steep seaward side, and its hummocks."""
@@ -185,7 +217,9 @@ def solid_heights(relief: CoastRelief, half_m: float, cell_m: float) -> HeightFi
     axis = np.linspace(-half_m, half_m, count)
     east, north = np.meshgrid(axis, axis)
     height = relief(np.column_stack([east.ravel(), north.ravel()])).reshape(count, count)
-    return HeightField((-half_m, -half_m), 2 * half_m / (count - 1), np.maximum(height, 0.0).astype(np.float32))
+    return HeightField(
+        (-half_m, -half_m), 2 * half_m / (count - 1), np.maximum(height, 0.0).astype(np.float32)
+    )
 
 
 def _near(xy: np.ndarray, shape: shapely.Geometry, reach_m: float) -> tuple[np.ndarray, np.ndarray]:

@@ -36,7 +36,9 @@ def revolve(
     around = np.column_stack([np.cos(turn), np.sin(turn)])
     k, after = np.arange(sides), (np.arange(sides) + 1) % sides
     for (r0, z0), (r1, z1), slot in zip(profile[:-1], profile[1:], slots, strict=True):
-        ring = np.concatenate([np.column_stack([around * r, np.full(sides, z)]) for r, z in ((r0, z0), (r1, z1))])
+        ring = np.concatenate(
+            [np.column_stack([around * r, np.full(sides, z)]) for r, z in ((r0, z0), (r1, z1))]
+        )
         out = np.array([z1 - z0, -(r1 - r0)])
         out = out / np.linalg.norm(out)
         first = -1

@@ -20,7 +20,12 @@ from scenegen.parts.fixtures.wires import wires
 
 _BAY_M = 4.0
 _POLE_PITCH_M = 38.0
-_RAIL_M, _POLE_M, _LAMP_M, _SIGN_M = ROAD_HALF_M + 0.7, ROAD_HALF_M + 3.6, ROAD_HALF_M + 1.1, ROAD_HALF_M + 1.3
+_RAIL_M, _POLE_M, _LAMP_M, _SIGN_M = (
+    ROAD_HALF_M + 0.7,
+    ROAD_HALF_M + 3.6,
+    ROAD_HALF_M + 1.1,
+    ROAD_HALF_M + 1.3,
+)
 
 
 def guard_rail() -> Template:
@@ -33,14 +38,18 @@ def guard_rail() -> Template:
     quads = np.array([[k, k + 1, k + 6, k + 5] for k in range(4)])
     faces = quads[:, [0, 2, 1, 0, 3, 2]].reshape(-1, 3)
     for side in (1.0, -1.0):
-        site = model.site(np.array([2.0, 0.035 + 0.06 * side, 0.6]), np.array([0, side, 0.0]), LUMP_STANDOFF_M)
+        site = model.site(
+            np.array([2.0, 0.035 + 0.06 * side, 0.6]), np.array([0, side, 0.0]), LUMP_STANDOFF_M
+        )
         skin = points + np.array([0, 0.004 * side, 0])
         turned = faces if side > 0 else faces[:, ::-1]
         model.mesh(skin, turned, 0, Semantic.BARRIER, np.full(faces.shape, site))
     return model.finish()
 
 
-def build_roadside(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -> tuple[list[Part], dict[str, int]]:
+def build_roadside(
+    layout: Layout, shop: CoastWorkshop, rng: np.random.Generator
+) -> tuple[list[Part], dict[str, int]]:
     """Everything along the road, and counts."""
     line = shapely.get_coordinates(layout.road)
     line = line[np.abs(line).max(axis=1) < shop.coast.half_m + 150.0]
@@ -49,7 +58,10 @@ def build_roadside(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator
     poles, wired = _poles(line, shop, pole_rng)
     lamps = _posts("lamp", line, layout, shop, lamp_rng)
     parts = [*rails, *poles, *wired, *lamps[0], *_lighthouse_fence(layout, shop, fence_rng)]
-    return parts, {"guard rail (m)": rail_m, "utility poles": len(poles) and int(len(poles[0].faces) > 0)} | lamps[1]
+    return parts, {
+        "guard rail (m)": rail_m,
+        "utility poles": len(poles) and int(len(poles[0].faces) > 0),
+    } | lamps[1]
 
 
 def _guard_rail(
@@ -80,7 +92,9 @@ def _guard_rail(
         shop.claims.hold(shape.buffer(0.3))
     position = np.column_stack([a, shop.relief(a)])
     heading = np.arctan2(unit[:, 1], unit[:, 0])
-    return [place(guard_rail(), position, heading, scale, skins, owner, rise[:, None] * unit)], round(run.sum())
+    return [place(guard_rail(), position, heading, scale, skins, owner, rise[:, None] * unit)], round(
+        run.sum()
+    )
 
 
 def _poles(line: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator) -> tuple[list[Part], list[Part]]:

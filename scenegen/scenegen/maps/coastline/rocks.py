@@ -47,7 +47,9 @@ def build_rocks(rock: str, shop: CoastWorkshop, rng: np.random.Generator) -> tup
         for k in range(_SHAPES):
             template = boulder(rng, Semantic.ROCK, splits + 1, 13 + 5 * splits)
             mine = np.flatnonzero((grade == splits) & (shape == k))
-            parts.append(place(template, position[mine], heading[mine], scale[mine], skins[mine], owner[mine]))
+            parts.append(
+                place(template, position[mine], heading[mine], scale[mine], skins[mine], owner[mine])
+            )
     return parts, count
 
 
@@ -75,7 +77,9 @@ def _draw(shop: CoastWorkshop, rng: np.random.Generator) -> tuple[np.ndarray, np
     return coast.plan(s, q)[order], scale[order]
 
 
-def build_armour(layout: Layout, rock: str, owner: int, shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:
+def build_armour(
+    layout: Layout, rock: str, owner: int, shop: CoastWorkshop, rng: np.random.Generator
+) -> list[Part]:
     """Rocks or concrete blocks on both slopes of the breakwater and around its head: one object with its core."""
     mound = layout.mound
     cubes = rng.uniform() < 0.5
@@ -92,7 +96,9 @@ def build_armour(layout: Layout, rock: str, owner: int, shop: CoastWorkshop, rng
     name = "concrete_pavement" if cubes else rock
     skins = np.array([[shop.palette.pick(name, rng)] for _ in range(count)], np.int64).reshape(-1, 1)
     position = np.column_stack([xy, ground + 0.18 * size])
-    scale = size * rng.uniform(0.88, 1.1, (count, 1)) * np.ones(3) * np.array([1.0, 1.0, 1.0 if cubes else 0.85])
+    scale = (
+        size * rng.uniform(0.88, 1.1, (count, 1)) * np.ones(3) * np.array([1.0, 1.0, 1.0 if cubes else 0.85])
+    )
     heading, shape = rng.uniform(0.0, 2 * np.pi, count), rng.integers(_SHAPES, size=count)
     parts = []
     for k in range(_SHAPES):

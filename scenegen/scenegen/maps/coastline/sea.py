@@ -60,9 +60,7 @@ class Sea:
         return np.asarray(share * self.waves.elevation(xy, cell_m))
 
 
-def draw_sea(
-    relief: CoastRelief, knobs: CoastlineKnobs, shop_K: float, rng: np.random.Generator
-) -> Sea:
+def draw_sea(relief: CoastRelief, knobs: CoastlineKnobs, shop_K: float, rng: np.random.Generator) -> Sea:
     """Draw wind, swell and the water's departure from the climatology `shop_K` [K]."""
     own, phases = rng.spawn(2)
     towards = relief.coast.frame.heading_rad + 0.5 * np.pi + own.uniform(-0.9, 0.9)
@@ -128,5 +126,3 @@ def _axis(half_m: float) -> np.ndarray:
         at = min(at + width, FAR_M) if at + 1.5 * width < FAR_M else FAR_M
         tail.append(at)
     return np.concatenate([-np.array(tail)[::-1], inner, tail])
-
-

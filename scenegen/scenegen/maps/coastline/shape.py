@@ -134,7 +134,9 @@ def draw_coast(knobs: CoastlineKnobs, rng: np.random.Generator) -> Coast:
     frame = Frame(whole.uniform(0.0, 2 * np.pi), whole.uniform(-0.06, 0.12) * half)
     s = _stations()
     cliff = _cliffness(s, half, whole.uniform(*knobs.cliff_share), rock)
-    detail = 11.0 * _noise(s, 170.0, bends) + 26.0 * _noise(s, 700.0, bends) + 260.0 * _noise(s, 6500.0, bends)
+    detail = (
+        11.0 * _noise(s, 170.0, bends) + 26.0 * _noise(s, 700.0, bends) + 260.0 * _noise(s, 6500.0, bends)
+    )
     jag = 2.2 * _noise(s, 26.0, bends) + 1.0 * _noise(s, 11.0, bends)
     near = np.clip(1.6 - np.abs(s) / 1500.0, 0.0, 1.0)
     shore = detail - detail[len(s) // 2] + near * (0.12 + cliff) * jag + 18.0 * (0.5 - cliff)
@@ -142,7 +144,9 @@ def draw_coast(knobs: CoastlineKnobs, rng: np.random.Generator) -> Coast:
     width = sand.uniform(*knobs.beach_width_m) * (1 + 0.22 * np.clip(_noise(s, 160.0, sand), -1.5, 1.5))
     wet = np.full(len(s), wet_m / slope) * (1 + 0.18 * np.clip(_noise(s, 24.0, sand), -1.5, 1.5) * near)
     beach = np.maximum(width * (1 - cliff) + (wet + _LEDGE_M) * cliff, wet + 3.0)
-    beach += near * cliff * 1.6 * np.clip(_noise(s, 16.0, rock), -1.6, 1.6) + near * 1.2 * _noise(s, 30.0, rock)
+    beach += near * cliff * 1.6 * np.clip(_noise(s, 16.0, rock), -1.6, 1.6) + near * 1.2 * _noise(
+        s, 30.0, rock
+    )
     top = hill.uniform(*knobs.cliff_height_m)
     cliff_m = top * cliff * (0.86 + 0.14 * np.clip(_noise(s, 190.0, hill), -2.0, 1.0))
     run = np.maximum((0.24 + 0.5 * (1 - cliff)) * cliff_m + 22.0 * (1 - cliff), 2.0)

@@ -12,6 +12,9 @@ from scenegen.buildings.roof_gear import draw_roof_gear
 from scenegen.buildings.shells import build_shells
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import rectangles
+from scenegen.maps.coastline.boats import build_boats
+from scenegen.maps.coastline.cars import build_cars
+from scenegen.maps.coastline.folk import build_folk
 from scenegen.maps.coastline.houses import draw_houses
 from scenegen.maps.coastline.huts import build_huts, draw_huts, standing_height
 from scenegen.maps.coastline.layout import LIGHTHOUSE_YARD_M, Layout
@@ -21,6 +24,7 @@ from scenegen.maps.coastline.pier import HEAD_M, WIDTH_M, build_pier
 from scenegen.maps.coastline.relief import ROAD_HALF_M
 from scenegen.maps.coastline.roadside import build_roadside
 from scenegen.maps.coastline.rocks import build_armour, build_rocks
+from scenegen.maps.coastline.sea import Sea
 from scenegen.maps.coastline.workshop import CoastWorkshop
 
 
@@ -49,7 +53,7 @@ def hold_layout(layout: Layout, shop: CoastWorkshop) -> None:
 
 
 def build_things(
-    layout: Layout, rock: str, shop: CoastWorkshop, rngs: Sequence[np.random.Generator]
+    layout: Layout, rock: str, sea: Sea, shop: CoastWorkshop, rngs: Sequence[np.random.Generator]
 ) -> Things:
     """Build everything but ground and sea.
 
@@ -58,11 +62,16 @@ def build_things(
     layout : Layout
     rock : str
         Material of this coast's rock.
+    sea : Sea
+        On which boats float.
     shop : CoastWorkshop
     rngs : sequence of numpy.random.Generator
         One for each subsystem.
     """
-    house_rng, shell_rng, hut_rng, tower_rng, pier_rng, wall_rng, rock_rng, road_rng, grass_rng, life_rng = rngs
+    house_rng, shell_rng, hut_rng, tower_rng, pier_rng, wall_rng, rock_rng, road_rng, grass_rng, life_rng = (
+        rngs
+    )
+    car_rng, boat_rng, folk_rng = life_rng.spawn(3)
     houses = draw_houses(layout, shop, house_rng)
     rows = draw_huts(shop, hut_rng)
     parts = [build_lighthouse(layout, shop, tower_rng), *build_pier(layout, shop, pier_rng)]
@@ -72,10 +81,14 @@ def build_things(
         parts += [build_shells(houses, gear.plans, shell_rng), *gear.parts]
     parts += build_huts(rows, standing_height(rows, shop), shop, hut_rng)
     roadside, counts = build_roadside(layout, shop, road_rng)
+    cars, car_count = build_cars(layout, houses, shop, car_rng)
     rocks, rock_count = build_rocks(rock, shop, rock_rng)
-    parts += [*roadside, *rocks, *build_marram(shop, grass_rng)]
+    boats, boat_count = build_boats(layout, sea, shop, boat_rng)
+    folk, folk_count = build_folk(layout, rows, shop, folk_rng)
+    parts += [*roadside, *cars, *rocks, *boats, *folk, *build_marram(shop, grass_rng)]
     size = np.full(len(rows), 2.6), np.full(len(rows), 2.2)
     huts = shapely.buffer(rectangles(rows[:, :2], *size, rows[:, 2]), -0.05, join_style="mitre")
     holes = (*(b.footprint.buffer(-0.01, join_style="mitre") for b in houses), *huts)
     total = {"houses": len(houses), "huts": len(rows), "rocks": rock_count} | counts
+    total |= {"cars": car_count, "boats": boat_count, "people": folk_count}
     return Things(tuple(parts), holes, tuple(total.items()))
