@@ -1,22 +1,26 @@
-"""Rest poses of whatever moves, taken from the shared parts: one body at the origin, facing +x."""
+"""Vehicles and boats in their rest pose, taken from the shared parts: one body at the origin, facing +x."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from scenegen.geometry.cars import BODIES, car
-from scenegen.geometry.part import Part
-from scenegen.geometry.template import place
+from scenegen.geometry.part import Part, concatenate
+from scenegen.parts.boats.moor import moor
+from scenegen.parts.vehicles.park import park
 from scenegen.parts.workshop import Workshop
 
-_PAINTS = ("car_paint_black", "car_paint_white", "car_paint_silver", "car_paint_silver")
+_ORIGIN = np.zeros((1, 3))
+_AHEAD = np.zeros(1)
 
 
-def vehicle(kind: str, shop: Workshop, rng: np.random.Generator) -> Part:
-    """A driven vehicle: warm bonnet, tyres, exhaust."""
-    paint = shop.palette.pick(_PAINTS[int(rng.integers(4))], rng)
-    skins = np.array([[paint, shop.palette.pick("window_glass", rng), shop.palette.only("tyre_rubber")]])
-    body = "van" if kind == "van" else BODIES[int(rng.integers(3))]
-    zero = np.zeros((1, 3))
-    owner = np.array([shop.builder.new_objects()])
-    return place(car(body), zero, zero[:, 0], np.full((1, 3), rng.uniform(0.95, 1.05)), skins, owner)
+def vehicles(kinds: Sequence[str], shop: Workshop, rng: np.random.Generator) -> list[Part]:
+    """Driven vehicles of given kinds, in order: warm bonnets, tyres, exhausts."""
+    level = np.zeros((1, 2))
+    return [concatenate(park(kind, _ORIGIN, _AHEAD, level, shop, rng, driven=True)) for kind in kinds]
+
+
+def boat(kind: str, running: bool, shop: Workshop, rng: np.random.Generator) -> Part:
+    """A boat, its engine running or not; the origin lies on the water."""
+    return concatenate(moor(kind, _ORIGIN, _AHEAD, shop, rng, running))

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from scenegen.geometry.relief import Relief
-from scenegen.movers.bodies import vehicle
+from scenegen.movers.bodies import vehicles
 from scenegen.movers.mover import Mover
 from scenegen.movers.rounds import Pace, ring_route
 from scenegen.parts.workshop import Workshop
@@ -63,8 +63,7 @@ def drive(
         count = min(wanted, int(route.round_s / HEADWAY_S))
         slack = 0.5 * (1.0 - HEADWAY_S * count / route.round_s) if count else 0.0
         starts = (np.arange(count) + child.uniform(-slack, slack, count)) / max(count, 1) + child.uniform()
-        for start, kind in zip(starts, child.choice(kinds, count, p=shares / shares.sum()), strict=True):
-            movers.append(
-                Mover(str(kind), vehicle(str(kind), shop, child), route.starting(float(start % 1.0)))
-            )
+        drawn = [str(kind) for kind in child.choice(kinds, count, p=shares / shares.sum())]
+        for start, kind, body in zip(starts % 1.0, drawn, vehicles(drawn, shop, child), strict=True):
+            movers.append(Mover(kind, body, route.starting(float(start))))
     return tuple(movers)
