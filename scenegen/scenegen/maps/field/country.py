@@ -13,6 +13,7 @@ from shapely.ops import split
 from scenegen.maps.field.frame import Frame, Plot
 from scenegen.maps.field.grounds import Grounds
 from scenegen.maps.field.knobs import FieldKnobs
+from scenegen.maps.field.pylons import CORRIDOR_M, draw_line
 
 FAR_M = 2400.0
 """Half the side of the land [m]."""
@@ -85,6 +86,8 @@ class Country:
     farm : Farm
     pond : Plot or None
         Its platform; the water lies inside.
+    pylons : float64 (towers, 2) or None
+        Feet of the towers of a high-voltage line.
     """
 
     parcels: tuple[Parcel, ...]
@@ -93,6 +96,14 @@ class Country:
     drive: shapely.Polygon
     farm: Farm
     pond: Plot | None
+    pylons: Float64[np.ndarray, "towers 2"] | None
+
+    @property
+    def corridor(self) -> shapely.Geometry:
+        """The strip below the high-voltage line, empty without one."""
+        if self.pylons is None:
+            return shapely.Polygon()
+        return shapely.LineString(self.pylons).buffer(CORRIDOR_M)
 
     @property
     def carriageway(self) -> shapely.Polygon:
@@ -117,9 +128,17 @@ def lay_out_country(
     drive = shapely.LineString(grounds.access).buffer(_DRIVE_HALF_M, cap_style="flat")
     farm = _farm(grounds, half_m, rng)
     taken = [grounds.outline.buffer(18.0), shapely.LineString(road).buffer(20.0), farm.yard.outline(18.0)]
-    pond = _pond(shapely.union_all(taken), half_m, rng) if rng.uniform() < rng.uniform(*knobs.pond_share) else None
+    free = shapely.union_all(taken)
+    pond = _pond(free, half_m, rng) if rng.uniform() < rng.uniform(*knobs.pond_share) else None
+    masts = shapely.union_all([grounds.outline.buffer(6.0), farm.yard.outline(4.0)])
+    crossed = rng.uniform() < rng.uniform(*knobs.pylon_share)
+    pylons = draw_line(_with_pond(masts, pond), half_m, FAR_M, rng) if crossed else None
     parcels, boundaries = _parcels(grounds.frame.heading_rad, knobs, rng)
-    return Country(parcels, boundaries, road, drive, farm, pond)
+    return Country(parcels, boundaries, road, drive, farm, pond, pylons)
+
+
+def _with_pond(taken: shapely.Geometry, pond: Plot | None) -> shapely.Geometry:
+    return taken if pond is None else taken.union(pond.outline())
 
 
 def ribbon(line: Float64[np.ndarray, "points 2"], left_m: float, right_m: float) -> shapely.Polygon:

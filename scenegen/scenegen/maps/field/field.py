@@ -19,6 +19,7 @@ from scenegen.maps.field.houses import plan_houses
 from scenegen.maps.field.knobs import FieldKnobs
 from scenegen.maps.field.masts import build_flags, build_masts, build_power_line
 from scenegen.maps.field.outskirts import far_objects
+from scenegen.maps.field.pylons import build_pylons
 from scenegen.maps.field.relief import draw_land, height_field, level
 from scenegen.maps.field.stands import build_stand
 from scenegen.maps.field.terrain import build_terrain
@@ -74,6 +75,8 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
     masts, mast_feet = build_masts(grounds, shop, posts_rng)
     line, pole_feet = build_power_line(country, half, shop, posts_rng)
     builder.add(*masts, *line, *build_flags(grounds, shop, posts_rng))
+    if country.pylons is not None:
+        builder.add(*build_pylons(country.pylons, shop, posts_rng))
     builder.add(*build_fences(grounds, country, shop, posts_rng))
     cars, car_places = build_traffic(grounds, country, half, shop, cars_rng)
     posts = np.concatenate([mast_feet, pole_feet])

@@ -76,6 +76,9 @@ class FieldKnobs(Section):
     pond_share: Share = (0.3, 0.7)
     """Share of worlds with a pond."""
 
+    pylon_share: Share = (0.3, 0.8)
+    """Share of worlds that a high-voltage line crosses."""
+
     relief_m: Annotated[Span, AfterValidator(_within(0.0, 6.0))] = (1.0, 3.5)
     """Amplitude of the terrain around the grounds [m]."""
 

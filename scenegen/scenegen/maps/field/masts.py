@@ -37,7 +37,7 @@ def build_masts(grounds: Grounds, shop: FieldWorkshop, rng: np.random.Generator)
             continue
         xy = mast_spots(grounds, pitch)
         towards = np.array([pitch.frame.x_m, pitch.frame.y_m]) - xy
-        rows, columns = (int(rng.integers(2, 5)), int(rng.integers(3, 6))) if pitch.main else (1, 3)
+        rows, columns = (int(rng.integers(2, 5)), int(rng.integers(3, 6))) if pitch.main else (2, 2)
         metal, glass = shop.palette.pick("steel_galv_post", rng), shop.palette.pick("vehicle_glass", rng)
         owner = shop.builder.new_objects(4) + np.arange(4)
         skins = np.tile([[metal, glass]], (4, 1))

@@ -11,8 +11,8 @@ from scenegen.geometry.part import Part
 from scenegen.geometry.placement import clear_of, first_come, rectangles
 from scenegen.geometry.scatter import hexagonal
 from scenegen.geometry.template import Template, place
-from scenegen.geometry.trees import grove
 from scenegen.maps.field.country import FAR_M, ROAD_HALF_M, Country, Cover
+from scenegen.maps.field.thicket import thicket
 from scenegen.maps.field.workshop import FieldWorkshop
 
 _WALLS = ("stucco_render", "brick_red", "stucco_render", "wood_siding")
@@ -28,14 +28,14 @@ def far_objects(
     houses, plan = _farms(country, near, shop, rng)
     spots = np.concatenate([_woods(country, rng), _lines(country, shop, rng)])
     crowns = shapely.buffer(shapely.points(spots[:, :2]), 0.36 * spots[:, 2], quad_segs=3)
-    taken = np.array([near, country.carriageway.buffer(1.0), *plan], dtype=object)
+    taken = np.array([near, country.carriageway.buffer(1.0), country.corridor, *plan], dtype=object)
     spots = spots[clear_of(crowns, taken, 1.0)]
     return [_groves(spots, shop, rng), *houses], len(spots), len(plan)
 
 
 def _pitch_m(reach: np.ndarray | float) -> np.ndarray:
     """Distance between masses of trees [m]: coarser with distance, as one sees it."""
-    return np.asarray(15.0 + 0.02 * np.asarray(reach))
+    return np.asarray(17.0 + 0.026 * np.asarray(reach))
 
 
 def _woods(country: Country, rng: np.random.Generator) -> np.ndarray:
@@ -77,10 +77,10 @@ def _lines(country: Country, shop: FieldWorkshop, rng: np.random.Generator) -> n
 def _groves(spots: np.ndarray, shop: FieldWorkshop, rng: np.random.Generator) -> Part:
     leaves = np.array(shop.palette.variants("tree_crown"))
     skin = leaves[rng.integers(len(leaves), size=len(spots))][:, None]
-    position = np.column_stack([spots[:, :2], shop.relief(spots[:, :2]) - 0.4])
+    position = np.column_stack([spots[:, :2], shop.relief(spots[:, :2])])
     scale = spots[:, [2, 2, 3]]
     owner = shop.builder.new_objects(len(spots)) + np.arange(len(spots))
-    return place(grove(rng), position, rng.uniform(0.0, 2 * np.pi, len(spots)), scale, skin, owner)
+    return place(thicket(rng), position, rng.uniform(0.0, 2 * np.pi, len(spots)), scale, skin, owner)
 
 
 def _farms(
@@ -100,7 +100,7 @@ def _farms(
     width = np.where(barn, rng.uniform(10.0, 18.0, total), rng.uniform(7.5, 10.0, total))
     heading = rng.uniform(0.0, np.pi, count)[farm] + 0.5 * np.pi * rng.integers(0, 2, total)
     shapes = rectangles(xy, length + 3.0, width + 3.0, heading)
-    taken = np.array([near, country.carriageway.buffer(ROAD_HALF_M)], dtype=object)
+    taken = np.array([near, country.carriageway.buffer(ROAD_HALF_M), country.corridor], dtype=object)
     keep = clear_of(shapes, taken, 2.0) & first_come(shapes) & (np.abs(xy).max(axis=1) < FAR_M - 40.0)
     xy, length, width, heading, barn = xy[keep], length[keep], width[keep], heading[keep], barn[keep]
     wall = [shop.palette.pick(_WALLS[int(k)], rng) for k in rng.integers(0, 4, len(xy))]
