@@ -77,7 +77,7 @@ def test_saturated_pixels_are_counted() -> None:
     frame = np.full((30, 40), band_radiance(np.array([300.0]), BAND)[0], np.float32)
     frame[:3] = 500.0
     frame[3] = 0.1
-    (reading,) = sense([frame], np.array([0.0]), CAMERA, SensorKnobs(), stream(1))
+    (reading,) = sense([frame], np.array([0.0]), CAMERA, SensorKnobs(lens_mtf_nyquist=1.0), stream(1))
     assert reading.saturated == 4 * 40
     assert reading.counts.dtype == np.uint16
 

@@ -1,4 +1,4 @@
-"""What a user can set about the camera's electronics."""
+"""What a user can set about the camera: its lens and its electronics."""
 
 from __future__ import annotations
 
@@ -13,12 +13,15 @@ Ratio = Annotated[Number, Field(ge=0.0, le=10.0)]
 
 
 class SensorKnobs(Section):
-    """Microbolometer read-out: lag, noise, digitisation.
+    """Lens and microbolometer read-out: blur, lag, noise, digitisation.
 
     The seven components of the 3-D noise model are given relative to the temporal pixel noise, which is the quoted
     NETD. No vendor publishes the ratios; the defaults are those of a camera shortly after its shutter correction.
     """
 
+    lens_mtf_nyquist: Annotated[Number, Field(gt=0.0, le=1.0)] = 0.36
+    """Modulation the lens leaves of stripes one pixel wide: 0.485 by diffraction at f/1.0 on 12 um pixels, times 0.735
+    for a quarter of a pixel of defocus; 1 is a perfect lens."""
     netd_mk: Annotated[Number, Field(ge=0.0, le=10_000.0)] = 50.0
     """Temporal noise of one pixel, as a temperature difference of a 300 K blackbody at f/1 [mK]."""
     fixed_pattern: Ratio = 0.30

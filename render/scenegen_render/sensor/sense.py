@@ -1,8 +1,9 @@
 """The microbolometer: radiance frames in order become 14-bit readings. Numpy only, seeded.
 
-A pixel is a first-order low-pass of the scene; its signal carries temporal noise (NETD) and a fixed pattern, in
-radiance, because the detector's noise does not depend on the scene: the noise-equivalent temperature difference grows
-towards cold scenes by itself. Noise components follow the 3-D noise model (D'Agostino and Webb, 1991).
+The lens softens the scene (`lens.py`). A pixel is a first-order low-pass of it; its signal carries temporal noise (NETD)
+and a fixed pattern, in radiance, because the detector's noise does not depend on the scene: the noise-equivalent
+temperature difference grows towards cold scenes by itself. Noise components follow the 3-D noise model (D'Agostino and
+Webb, 1991).
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from jaxtyping import Float32, Float64
 from scenegen.radiometry.planck import band_radiance_slope
 from scenegen_render.camera import Camera
 from scenegen_render.sensor.knobs import SensorKnobs
+from scenegen_render.sensor.lens import blurred
 from scenegen_render.sensor.reading import Reading
 from scenegen_render.sensor.scale import MAX_COUNT, CountScale, radiance_to_counts
 from scenegen_render.sensor.unit import CameraUnit, draw_unit
@@ -97,7 +99,8 @@ class Microbolometer:
             If the frame is not on the camera's grid, not finite, or not later than the one before.
         """
         self._check(radiance, time_s)
-        signal = self._follow(radiance, time_s).copy()
+        focused = blurred(radiance, self._knobs.lens_mtf_nyquist)
+        signal = self._follow(focused, time_s).copy()
         if self._knobs.noise:
             self._add_temporal_noise(signal)
         if self._knobs.pattern:
