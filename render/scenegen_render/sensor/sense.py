@@ -1,7 +1,7 @@
 """The microbolometer: radiance frames in order become 14-bit readings. Numpy only, seeded.
 
-The lens softens the scene (`lens.py`). A pixel is a first-order low-pass of it; its signal carries temporal noise (NETD)
-and a fixed pattern, in radiance, because the detector's noise does not depend on the scene: the noise-equivalent
+The lens softens the scene (`lens.py`). A pixel is a first-order low-pass of it; its signal carries temporal noise
+(NETD) and a fixed pattern, in radiance, because the detector's noise does not depend on the scene: the noise-equivalent
 temperature difference grows towards cold scenes by itself. Noise components follow the 3-D noise model (D'Agostino and
 Webb, 1991).
 """
