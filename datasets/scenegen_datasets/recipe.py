@@ -11,6 +11,8 @@ from scenegen.climate.knobs import ClimateKnobs
 from scenegen.foundation.errors import InputError, nearest
 from scenegen.foundation.section import Count, Section
 from scenegen.maps.city.knobs import CityKnobs
+from scenegen.maps.coastline.knobs import CoastlineKnobs
+from scenegen.maps.field.knobs import FieldKnobs
 from scenegen.maps.own_scene.knobs import OwnScene
 from scenegen.maps.registry import MAPS
 from scenegen_datasets.job import is_map_name
@@ -61,6 +63,8 @@ class Recipe(Section):
     camera: CameraKnobs = CameraKnobs()
     sensor: SensorKnobs = SensorKnobs()
     city: CityKnobs = CityKnobs()
+    coastline: CoastlineKnobs = CoastlineKnobs()
+    field: FieldKnobs = FieldKnobs()
 
     @field_validator("map")
     @classmethod

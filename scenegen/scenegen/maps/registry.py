@@ -14,6 +14,10 @@ from scenegen.foundation.errors import InputError, nearest
 from scenegen.foundation.section import Section
 from scenegen.maps.city.city import build_city
 from scenegen.maps.city.knobs import CityKnobs
+from scenegen.maps.coastline.coastline import build_coastline
+from scenegen.maps.coastline.knobs import CoastlineKnobs
+from scenegen.maps.field.field import build_field
+from scenegen.maps.field.knobs import FieldKnobs
 from scenegen.maps.own_scene.knobs import OwnScene
 from scenegen.maps.own_scene.own_scene import build_own_scene
 from scenegen.world import World
@@ -45,7 +49,14 @@ _FAMILIES = (
     MapFamily(
         "city", "dense streets, blocks and parks of a European or American town", CityKnobs, build_city
     ),
-)
+    MapFamily(
+        "coastline", "cliffs, dunes and beach by a wavy sea, with pier, breakwater and lighthouse", CoastlineKnobs,
+        build_coastline,
+    ),
+    MapFamily(
+        "field", "a football ground in rolling farmland: pitches, stands, floodlights, nets", FieldKnobs, build_field
+    ),
+)  # fmt: skip
 
 MAPS: Mapping[str, MapFamily] = MappingProxyType({family.name: family for family in _FAMILIES})
 """All map families by name."""
