@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from scenegen.geometry.part import Part
-from scenegen.geometry.template import place
+from scenegen.geometry.template import Template, place
 from scenegen.movers.gait import Gait
 from scenegen.parts.people.body import body
 from scenegen.parts.people.outfit import outfits
@@ -35,9 +35,14 @@ def person(speed_mps: float, shop: Workshop, rng: np.random.Generator) -> tuple[
     posture = "running" if runs else "walking"
     owner = np.array([shop.builder.new_objects()])
     zero, cycle = np.zeros((1, 3)), (_cycle(posture, young) * scale).astype(np.float32)
-    part = place(body(posture, 0.0, young), zero, zero[:, 0], scale[None], outfits(1, shop, rng), owner)
+    part = place(_rest(posture, young), zero, zero[:, 0], scale[None], outfits(1, shop, rng), owner)
     pace = np.sqrt(speed_mps / 3.0) * 1.3 if runs else np.sqrt(speed_mps / 1.3) * 0.8
     return part, Gait(float(pace * tall), cycle)
+
+
+@cache
+def _rest(posture: str, young: bool) -> Template:
+    return body(posture, 0.0, young)
 
 
 @cache

@@ -8,7 +8,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from scenegen.geometry.relief import Relief
-from scenegen.movers.bodies import boat
+from scenegen.movers.bodies import boats
 from scenegen.movers.mover import Mover
 from scenegen.movers.rounds import Pace, ring_route, standing
 from scenegen.movers.sway import Sway, swaying
@@ -60,10 +60,9 @@ def sail(
         count = min(int(child.poisson(per_km * round_m / 1000.0)), int(route.round_s / HEADWAY_S))
         slack = 0.5 * (1.0 - HEADWAY_S * count / route.round_s) if count else 0.0
         starts = (np.arange(count) + child.uniform(-slack, slack, count)) / max(count, 1) + child.uniform()
-        for start, kind in zip(
-            starts % 1.0, child.choice(kinds, count, p=shares / shares.sum()), strict=True
-        ):
-            mover = Mover("boat", boat(str(kind), True, shop, child), route.starting(float(start)))
+        drawn = [str(kind) for kind in child.choice(kinds, count, p=shares / shares.sum())]
+        for start, body in zip(starts % 1.0, boats(drawn, True, shop, child), strict=True):
+            mover = Mover("boat", body, route.starting(float(start)))
             movers.append(_afloat(mover, wave_height_m, wave_period_s, child))
     return tuple(movers)
 
@@ -97,10 +96,11 @@ def anchor(
     """
     movers = []
     position = np.column_stack([place, water(place)])
-    for where, heading, kind, child in zip(
-        position, heading_rad, kinds, rng.spawn(len(position)), strict=True
+    bodies = boats(list(kinds), False, shop, rng)
+    for where, heading, body, child in zip(
+        position, heading_rad, bodies, rng.spawn(len(position)), strict=True
     ):
-        mover = Mover("boat", boat(kind, False, shop, child), standing(where, float(heading)))
+        mover = Mover("boat", body, standing(where, float(heading)))
         movers.append(_afloat(mover, wave_height_m, wave_period_s, child))
     return tuple(movers)
 
