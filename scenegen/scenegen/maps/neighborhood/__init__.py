@@ -1,0 +1,1 @@
+"""The neighborhood: detached houses with gardens along curved streets."""

@@ -1,0 +1,189 @@
+"""The ground plan: far land, commons, gardens, streets, driveways and pools, with holes under houses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import shapely
+
+from scenegen.classes import Semantic
+from scenegen.geometry.ground import Region, drape
+from scenegen.geometry.part import Part
+from scenegen.geometry.planar import triangulate
+from scenegen.geometry.scatter import contact_points, graded_points, hexagonal
+from scenegen.maps.neighborhood.outskirts import FAR_M, far_regions
+from scenegen.maps.neighborhood.parcels import Parcel
+from scenegen.maps.neighborhood.streets import KERB_M, StreetPlan
+from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
+
+_FINE_M, _COARSE_M, _NEAR_M = 3.0, 4.6, 3.5
+"""Spacing of the lattice within `_NEAR_M` of walls and cars, and elsewhere."""
+_WALL_ROW = (1.9, 1.0)
+"""Spacing, distance: the row of points along walls, and the spacing on the contact line itself."""
+_LINE_M, _CAR_LINE_M = 3.4, 1.6
+_CAR_ROW = (2.0, 0.7)
+_ROAD_GRAIN_M, _GRAIN_M = 0.7, 1.1
+_TUCK_M, _SILL_M, _GRID_M = 0.01, 0.15, 0.002
+_WATER_BELOW_M = 0.14
+
+
+def build_ground(
+    plan: StreetPlan,
+    parcels: Sequence[Parcel],
+    holes: Sequence[shapely.Polygon],
+    cars: np.ndarray,
+    shop: NeighborhoodWorkshop,
+    rng: np.random.Generator,
+) -> Part:
+    """All ground, from the middle to the far edge.
+
+    Parameters
+    ----------
+    plan : StreetPlan
+    parcels : sequence of Parcel
+    holes : sequence of shapely.Polygon
+        Where houses, porches and sheds stand.
+    cars : array of shapely.Polygon
+        Plan of each standing car.
+    shop : NeighborhoodWorkshop
+    rng : numpy.random.Generator
+    """
+    regions = far_regions(plan, shop, rng)
+    regions += _commons(plan, shop, rng)
+    regions += _lawns(parcels, shop, rng)
+    regions += _streets(plan, shop, rng)
+    regions += _paving(parcels, plan, shop, rng)
+    regions += _pools(parcels, shop, rng)
+    regions += _below_cars(cars, regions)
+    solid = shapely.union_all(np.asarray(holes, dtype=object), grid_size=_GRID_M)
+    whole = list(shapely.get_parts(shapely.buffer(solid, -_TUCK_M, join_style="mitre")))
+    regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in whole]
+    regions = [replace(r, grain_m=_grain(r)) for r in regions]
+    half = float(np.abs(plan.outline.bounds).max())
+    plane = triangulate(
+        [r.outline for r in regions],
+        _lattice(plan, whole, cars, rng),
+        np.array([_line_spacing(r) for r in regions]),
+        (half * 1.03, 0.2),
+        contact_points(list(cars), *_CAR_ROW),
+    )
+    return drape(plane, regions, shop.relief)
+
+
+def _lattice(
+    plan: StreetPlan, solid: Sequence[shapely.Polygon], cars: np.ndarray, rng: np.random.Generator
+) -> np.ndarray:
+    """Free points: a row along walls, a lattice that is finer near walls and cars, coarser bands farther out."""
+    near = shapely.STRtree(np.concatenate([np.asarray(solid, dtype=object), cars]))
+
+    def close(points: np.ndarray, reach_m: float) -> np.ndarray:
+        mask = np.zeros(len(points), bool)
+        mask[near.query(shapely.points(points), predicate="dwithin", distance=reach_m)[0]] = True
+        return mask
+
+    fine = hexagonal(*plan.outline.bounds, _FINE_M, rng)
+    fine = fine[shapely.contains_xy(plan.outline, fine)]
+    coarse = graded_points(plan.outline.buffer(3.0), FAR_M, _COARSE_M, rng)
+    return np.concatenate(
+        [
+            contact_points(solid, *_WALL_ROW),
+            fine[close(fine, _NEAR_M)],
+            coarse[~close(coarse, _NEAR_M + _FINE_M / 2)],
+        ]
+    )
+
+
+def _line_spacing(region: Region) -> float:
+    """Largest distance of points along an outline [m]."""
+    if region.hole:
+        return _WALL_ROW[0]
+    return _CAR_LINE_M if region.lumped else _LINE_M
+
+
+def _grain(region: Region) -> float:
+    """Size of the cells that have one site at most [m]."""
+    return _ROAD_GRAIN_M if region.semantic == int(Semantic.ROAD) else _GRAIN_M
+
+
+def _commons(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Generator) -> list[Region]:
+    """Everything inside the outline that will be neither street nor garden."""
+    skin = shop.palette.pick("grass_dry" if rng.uniform() < 0.6 else "grass_watered", rng)
+    return [Region(plan.outline, skin, int(Semantic.GRASS), shop.builder.new_objects(), KERB_M)]
+
+
+def _lawns(parcels: Sequence[Parcel], shop: NeighborhoodWorkshop, rng: np.random.Generator) -> list[Region]:
+    """One lawn per lot, of one of a few kinds."""
+    regions = []
+    first = shop.builder.new_objects(len(parcels))
+    for k, parcel in enumerate(parcels):
+        skin = shop.palette.pick("grass_dry" if parcel.dry else "grass_watered", rng)
+        regions.append(Region(parcel.lot.area, skin, int(Semantic.GRASS), first + k, KERB_M))
+    return regions
+
+
+def _streets(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Generator) -> list[Region]:
+    """Sidewalks, then verges, then the carriageway on top."""
+    pavement, asphalt = shop.palette.pick("concrete_pavement", rng), shop.palette.pick("asphalt_aged", rng)
+    grass = shop.palette.pick("grass_dry" if rng.uniform() < 0.5 else "grass_watered", rng)
+    walk, verge, road = shop.builder.new_objects(), shop.builder.new_objects(), shop.builder.new_objects()
+    regions = [Region(plan.front, pavement, int(Semantic.SIDEWALK), walk, KERB_M)]
+    if plan.verge_m > 0:
+        strip = plan.carriageway.buffer(plan.verge_m, quad_segs=4).simplify(0.05)
+        regions += [
+            Region(p, grass, int(Semantic.GRASS), verge, KERB_M)
+            for p in shapely.get_parts(strip.intersection(plan.front))
+            if p.geom_type == "Polygon"
+        ]
+    return [*regions, Region(plan.carriageway, asphalt, int(Semantic.ROAD), road)]
+
+
+def _paving(
+    parcels: Sequence[Parcel], plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Generator
+) -> list[Region]:
+    """Driveways, paths, patios, copings and beds; each house has its own, its paving of one kind."""
+    regions = []
+    for parcel in parcels:
+        if not parcel.paved():
+            continue
+        owner = shop.builder.new_objects()
+        stone = shop.palette.pick("concrete_pavement", rng)
+        tar = rng.uniform() < 0.3
+        drive = shop.palette.pick("asphalt_aged", rng) if tar else stone
+        garden = parcel.garden
+        for outline, skin, semantic in (
+            (parcel.driveway, drive, Semantic.ROAD if tar else Semantic.SIDEWALK),
+            (parcel.path, stone, Semantic.SIDEWALK),
+            (garden.patio, stone, Semantic.SIDEWALK),
+            (garden.coping, stone, Semantic.SIDEWALK),
+            (garden.bed, shop.palette.pick("soil_wet", rng), Semantic.SOIL),
+        ):
+            if outline is not None:
+                regions.append(Region(outline, skin, int(semantic), owner, KERB_M))
+    return regions
+
+
+def _pools(parcels: Sequence[Parcel], shop: NeighborhoodWorkshop, rng: np.random.Generator) -> list[Region]:
+    """Water a little below the coping."""
+    regions = []
+    for parcel in parcels:
+        pool = parcel.garden.pool
+        if pool is not None:
+            level = float(shop.relief(shapely.get_coordinates(pool.exterior)).min()) + KERB_M - _WATER_BELOW_M
+            skin = shop.palette.special("water_fresh_or_sea", "pool")  # the heat balance knows the season
+            owner = shop.builder.new_objects()
+            regions.append(Region(pool, skin, int(Semantic.WATER), owner, level, absolute=True))
+    return regions
+
+
+def _below_cars(cars: np.ndarray, regions: Sequence[Region]) -> list[Region]:
+    """The ground below each car, with a site of its own: beside the car it is another world."""
+    if not len(cars):
+        return []
+    tree = shapely.STRtree(np.array([r.outline for r in regions], dtype=object))
+    car, ground = tree.query(shapely.centroid(cars), predicate="intersects")
+    top = np.zeros(len(cars), np.int64)
+    np.maximum.at(top, car, ground)
+    dark = shapely.buffer(cars, -_SILL_M, join_style="mitre")
+    return [replace(regions[k], outline=c, lumped=True) for c, k in zip(dark, top.tolist(), strict=True)]

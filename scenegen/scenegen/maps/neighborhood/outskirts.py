@@ -1,0 +1,134 @@
+"""Beyond the detailed neighborhood: fields, woods, roads that lead out, and plain houses up to the horizon."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import shapely
+
+from scenegen.classes import Semantic
+from scenegen.geometry.ground import Region
+from scenegen.geometry.modelling import Modeller
+from scenegen.geometry.part import Part
+from scenegen.geometry.placement import clear_of, first_come, rectangles
+from scenegen.geometry.template import Template, place
+from scenegen.geometry.trees import grove
+from scenegen.maps.neighborhood.streets import CARRIAGEWAY_M, StreetPlan
+from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
+
+FAR_M = 2400.0
+_COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "grass_watered")
+_BELOW_GROUND_M = 1.2
+
+
+def road_lines(plan: StreetPlan) -> np.ndarray:
+    """Centre lines of the roads that leave."""
+    lines = []
+    for start, direction in plan.exits:
+        t = np.linspace(-1.0, 2.0 * FAR_M, 60)
+        across = np.array([-direction[1], direction[0]])
+        sway = 45.0 * (1 - np.cos(t / 380.0)) * np.sign(start @ across + 1e-9)
+        lines.append(shapely.LineString(start + t[:, None] * direction + sway[:, None] * across))
+    return np.array(lines, dtype=object)
+
+
+def far_regions(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Generator) -> list[Region]:
+    """Land around; the first region covers everything."""
+    land, fields, road = shop.builder.new_objects(), shop.builder.new_objects(), shop.builder.new_objects()
+    edge = shapely.box(-FAR_M, -FAR_M, FAR_M, FAR_M)
+    regions = [Region(edge, shop.palette.pick("grass_dry", rng), int(Semantic.GRASS), land)]
+    half = np.abs(plan.outline.bounds).max()
+    count = 70
+    angle, reach = rng.uniform(0, 2 * np.pi, count), half + 1700.0 * rng.uniform(0.0, 1.0, count) ** 1.3
+    centre = np.column_stack([np.cos(angle), np.sin(angle)]) * reach[:, None]
+    length = rng.uniform(50.0, 110.0, count) * (reach / half)
+    heading = rng.uniform(0, np.pi, count)
+    shapes = rectangles(centre, length, length * rng.uniform(0.4, 0.9, count), heading)
+    roads = shapely.buffer(road_lines(plan), CARRIAGEWAY_M / 2, cap_style="flat")
+    taken = np.array([plan.outline.buffer(14.0), *shapely.buffer(roads, 4.0)], dtype=object)
+    keep = clear_of(shapes, taken) & first_come(shapes) & shapely.within(shapes, edge.buffer(-50.0))
+    for shape, k in zip(shapes[keep], rng.integers(0, len(_COVERS), keep.sum()), strict=True):
+        name = _COVERS[int(k)]
+        semantic = Semantic.SOIL if name.startswith("soil") else Semantic.GRASS
+        regions.append(Region(shape, shop.palette.pick(name, rng), int(semantic), fields))
+    asphalt = shop.palette.pick("asphalt_aged", rng)
+    inside = edge.buffer(-20.0).difference(plan.outline)
+    for shape in roads:
+        for piece in shapely.get_parts(shapely.intersection(shape, inside)):
+            if piece.geom_type == "Polygon":
+                regions.append(Region(piece, asphalt, int(Semantic.ROAD), road))
+    gap = plan.outline.difference(plan.front.buffer(0.01))
+    for shape in roads:  # from the last street of the plan to the outline
+        for piece in shapely.get_parts(shapely.intersection(shape, gap)):
+            if piece.geom_type == "Polygon" and piece.area > 1.0:
+                regions.append(Region(piece, asphalt, int(Semantic.ROAD), road))
+    return regions
+
+
+def far_objects(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Generator) -> list[Part]:
+    """Plain houses in hamlets, barns, groves and woods; they thin out with distance."""
+    half = float(np.abs(plan.outline.bounds).max())
+    count = 1500
+    angle = rng.uniform(0.0, 2 * np.pi, count)
+    reach = half * 0.8 + 1800.0 * rng.uniform(0.0, 1.0, count) ** 1.6
+    centre = np.column_stack([np.cos(angle), np.sin(angle)]) * reach[:, None]
+    hamlets = rng.uniform(-1.0, 1.0, (9, 2)) * 1500.0
+    near = np.linalg.norm(centre[:, None] - hamlets[None], axis=2).min(axis=1)
+    built = rng.uniform(size=count) < np.where(near < 260.0, 0.85, 0.12)
+    heading = 0.5 * np.pi * rng.integers(0, 2, count) + 0.6 * np.sin(2 * angle) + rng.normal(0, 0.1, count)
+    length = np.where(built, rng.uniform(9.0, 17.0, count), rng.uniform(14.0, 44.0, count))
+    width = np.where(built, rng.uniform(8.0, 11.0, count), length * rng.uniform(0.5, 1.0, count))
+    shapes = rectangles(centre, length + 4.0, width + 4.0, heading)
+    roads = shapely.buffer(road_lines(plan), CARRIAGEWAY_M / 2 + 3.0, cap_style="flat")
+    keep = clear_of(shapes, np.array([plan.outline.buffer(6.0), *roads], dtype=object)) & first_come(shapes)
+    houses, woods = keep & built, keep & ~built
+    size = np.column_stack([length, width, rng.uniform(3.0, 6.0, count)])
+    return [
+        _plain_houses(centre[houses], size[houses], heading[houses], shop, rng),
+        _groves(centre[woods], length[woods], shop, rng),
+    ]
+
+
+def _plain_house() -> Template:
+    """A unit box with a gable roof. Slots: walls, roof."""
+    model = Modeller()
+    a, e, r, o = 0.5, 1.0, 1.55, 0.56
+    sides = [
+        [[-a, -a, 0], [a, -a, 0], [a, -a, e], [-a, -a, e]], [[a, a, 0], [-a, a, 0], [-a, a, e], [a, a, e]],
+        [[a, -a, 0], [a, a, 0], [a, a, e], [a, -a, e]], [[-a, a, 0], [-a, -a, 0], [-a, -a, e], [-a, a, e]],
+        [[a, -a, e], [a, a, e], [a, 0, r], [a, 0, r]], [[-a, a, e], [-a, -a, e], [-a, 0, r], [-a, 0, r]],
+    ]  # fmt: skip
+    model.quads(np.array(sides, np.float64), 0, Semantic.WALL)
+    low = r - (r - e) * o / a
+    slopes = [
+        [[-o, -o, low], [o, -o, low], [o, 0, r], [-o, 0, r]], [[o, o, low], [-o, o, low], [-o, 0, r], [o, 0, r]],
+    ]  # fmt: skip
+    model.quads(np.array(slopes, np.float64) + np.array([0, 0, 0.03]), 1, Semantic.ROOF)
+    return model.finish()
+
+
+def _plain_houses(
+    centre: np.ndarray, size: np.ndarray, heading: np.ndarray, shop: NeighborhoodWorkshop, rng: np.random.Generator
+) -> Part:
+    walls, roofs = ("stucco_render", "brick_red", "wood_siding"), ("clay_roof_tile", "asphalt_shingle")
+    count = len(centre)
+    wall = [shop.palette.pick(walls[int(k)], rng) for k in rng.integers(0, 3, count)]
+    roof = [shop.palette.pick(roofs[int(k)], rng) for k in rng.integers(0, 2, count)]
+    skins = np.column_stack([np.array(wall, np.int64), np.array(roof, np.int64)])
+    base = np.column_stack([centre, shop.relief(centre) - _BELOW_GROUND_M])
+    template = _plain_house()
+    lifted = template.site_position.copy()
+    lifted[:4, 2] = 0.62  # above the ground on any slope
+    owner = shop.builder.new_objects(count) + np.arange(count)
+    scale = size + np.array([0.0, 0.0, _BELOW_GROUND_M])
+    return place(replace(template, site_position=lifted), base, heading, scale, skins, owner)
+
+
+def _groves(centre: np.ndarray, width: np.ndarray, shop: NeighborhoodWorkshop, rng: np.random.Generator) -> Part:
+    count = len(centre)
+    skin = np.array([[shop.palette.pick("tree_crown", rng)] for _ in range(count)], np.int64).reshape(-1, 1)
+    position = np.column_stack([centre, shop.relief(centre)])
+    scale = np.column_stack([width, width, rng.uniform(7.0, 14.0, count)])
+    owner = shop.builder.new_objects(count) + np.arange(count)
+    return place(grove(rng), position, rng.uniform(0.0, 2 * np.pi, count), scale, skin, owner)
