@@ -78,17 +78,19 @@ def pose(posture: str, phase: float = 0.0) -> Pose:
 
 def _angles(posture: str, phase: float) -> _Angles:
     turn = 2 * np.pi * (phase + np.array([0.0, 0.5]))
-    swing, lift = np.sin(turn), np.maximum(np.cos(turn + 0.5), 0.0) ** 1.5
+    swing = np.sin(turn)
     if posture == "standing":
         shift = 2.0 * np.sin(turn)
         return _Angles(shift, 3.0 + np.abs(shift), 4.0 + 3.0 * shift, np.array([14.0, 10.0]), 1.0, 8.0)
     if posture == "walking":
-        return _Angles(4.0 + 24.0 * swing, 6.0 + 52.0 * lift, -22.0 * swing, 22.0 - 10.0 * swing, 4.0)
+        lift = np.maximum(np.cos(turn + 0.5), 0.0) ** 1.5
+        return _Angles(4.0 + 22.0 * swing, 5.0 + 52.0 * lift, -22.0 * swing, 22.0 - 10.0 * swing, 4.0)
     if posture == "running":
-        return _Angles(14.0 + 38.0 * swing, 16.0 + 88.0 * lift, -34.0 * swing, np.full(2, 92.0), 11.0, 12.0)
+        lift = (0.5 + 0.5 * np.cos(turn - 0.6)) ** 1.3
+        return _Angles(14.0 + 36.0 * swing, 16.0 + 92.0 * lift, -34.0 * swing, np.full(2, 92.0), 11.0, 12.0)
     if posture == "sitting":
-        hands = 32.0 + 6.0 * np.sin(turn)
-        return _Angles(np.array([82.0, 80.0]), np.array([78.0, 84.0]), hands, np.array([52.0, 48.0]), -6.0)
+        hands = 17.0 + 4.0 * np.sin(turn)
+        return _Angles(np.array([84.0, 83.0]), np.array([80.0, 86.0]), hands, np.array([48.0, 45.0]), -6.0)
     raise ValueError(f"no posture '{posture}'")
 
 
