@@ -44,7 +44,11 @@ def build_coastline(knobs: CoastlineKnobs, season: Season, rng: np.random.Genera
     sea = draw_sea(relief, knobs, sea_surface_K(season), water)
     hold_layout(layout, shop)
     things = build_things(layout, rock, sea, shop, others)
-    builder.add(build_ground(layout, things.holes, rock, shop, ground), build_sea(sea, shop), *things.parts)
+    builder.add(
+        build_ground(layout, things.holes, things.stones, rock, sea.temperature_K, shop, ground),
+        build_sea(sea, shop),
+        *things.parts,
+    )
     merged = builder.merge()
     half = coast.half_m - _MARGIN_M
     return World(

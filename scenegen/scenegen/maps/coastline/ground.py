@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -20,11 +21,20 @@ from scenegen.maps.coastline.workshop import CoastWorkshop
 
 _FINE_M, _OPEN_M, _FACE_M = 2.1, 3.8, 1.0
 _CONTACT_M = 1.2
+_ROAD_END_M = 3500.0
+_FOLD = 0.45
+"""Sites rise by this share of what the highest face around them rises over their plane."""
 _COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "grass_watered")
 
 
 def build_ground(
-    layout: Layout, holes: Sequence[shapely.Polygon], rock: str, shop: CoastWorkshop, rng: np.random.Generator
+    layout: Layout,
+    holes: Sequence[shapely.Polygon],
+    stones: np.ndarray,
+    rock: str,
+    sea_K: float,
+    shop: CoastWorkshop,
+    rng: np.random.Generator,
 ) -> Part:
     """All solid ground, a little below the sea's edge to the far edge of the land.
 
@@ -33,21 +43,36 @@ def build_ground(
     layout : Layout
     holes : sequence of shapely.Polygon
         Footprints of buildings: no ground below them.
+    stones : array of shapely.Polygon
+        Footprints of rocks: no sites below them, whose heat would be seen around them.
     rock : str
         Material of this coast's rock.
+    sea_K : float
+        Temperature of the water [K].
     shop : CoastWorkshop
     rng : numpy.random.Generator
     """
     strips = _Strips(shop)
-    regions = [*strips.land(rng), *_fields(layout, shop, rng), *strips.shore(rock, rng)]
+    regions = [*strips.land(rng), *_fields(layout, shop, rng), *strips.shore(rock, sea_K, rng)]
     regions += _roads(layout, shop, rng)
     regions += _breakwater(layout, rock, shop, rng)
     regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in holes]
-    points = _points(strips, holes, rng)
+    points = _points(strips, holes, stones, rng)
     half = shop.coast.half_m
     spacing = np.array([_CONTACT_M if r.hole else _FINE_M for r in regions])
     plan = triangulate([r.outline for r in regions], points, spacing, (1.1 * half, 0.1))
-    return drape(plan, regions, shop.relief)
+    return _out_of_folds(drape(plan, regions, shop.relief))
+
+
+def _out_of_folds(ground: Part) -> Part:
+    """Lift sites in folds of the ground, as at the foot of a dune: their rays start a little aside of the vertex, and
+    would start below the steeper side."""
+    corner = ground.corner_site.ravel()
+    middle = np.repeat(ground.vertices[ground.faces].mean(axis=1), 3, axis=0)
+    over = ((middle - ground.site_position[corner]) * ground.site_normal[corner]).sum(axis=1)
+    rise = np.zeros(len(ground.site_position))
+    np.maximum.at(rise, corner, np.minimum(over, 1.0))
+    return replace(ground, site_position=ground.site_position + _FOLD * rise[:, None] * ground.site_normal)
 
 
 class _Strips:
@@ -80,22 +105,28 @@ class _Strips:
         parts = shapely.get_parts(clipped)
         return [p for p in parts if p.geom_type == "Polygon" and p.area > 1.0]
 
-    def shore(self, rock: str, rng: np.random.Generator) -> list[Region]:
+    def shore(self, rock: str, sea_K: float, rng: np.random.Generator) -> list[Region]:
         """Beach, dunes and cliffs, seaward ones last."""
         coast, s, pick = self.coast, self.s, self.shop.palette.pick
         wet, beach, brow, back = (c(s) for c in (coast.wet, coast.beach, coast.brow, coast.back))
         rocky = np.clip((coast.cliff(s) - 0.2) / 0.4, 0.0, 1.0)  # headlands taper out on the sand
         core, everywhere = beach + (0.35 + 0.25 * np.sin(s / 5.3)) * (brow - beach), np.ones(len(s), bool)
         top, base = core + rocky * (brow - core), core + rocky**0.7 * (self.foot - core)
+        near = np.abs(s) < 1.45 * coast.half_m  # a thin strip far away would only cost triangles
         middle = beach + np.clip(0.45 + 0.2 * np.sin(s / 17.0) + 0.12 * np.sin(s / 6.1), 0.2, 0.8) * (
             back - beach
         )
         sand, stone = pick("sand_dry_quartz", rng), pick(rock, rng)
+        wet_sand = self.shop.palette.variants("sand_wet", 2)[0]
         bare = brow + 1.6 + np.sin(s / 9.0) + 0.6 * np.sin(s / 3.7)
+        sandy, under = coast.cliff(s) < 0.15, np.full(len(s), -0.1 / coast.foreshore)
+        # What lies below the water is never seen: it has the water's temperature, so that none of it shows at the edge.
+        bed = self.shop.palette.special("sand_wet", "bed", prescribed_K=sea_K)
         table = (
             (self.foot, middle, everywhere, sand, Semantic.SAND),
-            (self.foot, wet, everywhere, pick("sand_wet", rng), Semantic.SAND),
-            (brow, bare, rocky == 1.0, pick("soil_dry", rng), Semantic.SOIL),
+            (self.foot, wet, np.abs(s) < 4000.0, wet_sand, Semantic.SAND),
+            (self.foot, under, sandy, bed, Semantic.SAND),
+            (brow, bare, (rocky == 1.0) & near, pick("soil_dry", rng), Semantic.SOIL),
             (base, top, rocky > 0.0, stone, Semantic.ROCK),
         )
         regions = []
@@ -175,7 +206,7 @@ def _roads(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -> lis
         Region(layout.path.buffer(0.9, cap_style="flat"), paved, walk, first + 2),
         Region(entry, asphalt, road, first + 3),
     ]
-    edge = shapely.box(-FAR_M + 20.0, -FAR_M + 20.0, FAR_M - 20.0, FAR_M - 20.0)
+    edge = shapely.box(-_ROAD_END_M, -_ROAD_END_M, _ROAD_END_M, _ROAD_END_M)
     strip = layout.road.buffer(ROAD_HALF_M, cap_style="flat", quad_segs=2).intersection(edge)
     regions += [Region(p, asphalt, road, first + 4) for p in shapely.get_parts(strip)]
     dashes = _dashes(layout, shop)
@@ -232,7 +263,9 @@ def _breakwater(layout: Layout, rock: str, shop: CoastWorkshop, rng: np.random.G
     ]
 
 
-def _points(strips: _Strips, holes: Sequence[shapely.Polygon], rng: np.random.Generator) -> np.ndarray:
+def _points(
+    strips: _Strips, holes: Sequence[shapely.Polygon], stones: np.ndarray, rng: np.random.Generator
+) -> np.ndarray:
     """Fine near the shore and the road, finer on faces of cliffs, coarse on open land and beyond."""
     coast = strips.coast
     fine, face = (hexagonal(*coast.core(), spacing, rng) for spacing in (_FINE_M, _FACE_M))
@@ -251,6 +284,9 @@ def _points(strips: _Strips, holes: Sequence[shapely.Polygon], rng: np.random.Ge
     square = np.abs(far).max(axis=1) < coast.half_m
     sq_far = coast.offset(far)
     dry = sq_far[:, 1] > np.interp(sq_far[:, 0], strips.s, strips.foot)
-    rows = contact_points(list(holes), _CONTACT_M, 0.9)
+    large = [s for s in stones if s.area > 3.0]
+    rows = [contact_points(list(holes), _CONTACT_M, 0.9), contact_points(large, _CONTACT_M, 0.35)]
     fine = fine[zone(fine) & ~steep(fine)]
-    return np.concatenate([rows, face[steep(face)], fine, far[dry & ~(square & zone(far))]])
+    points = np.concatenate([*rows, face[steep(face)], fine, far[dry & ~(square & zone(far))]])
+    hidden = shapely.STRtree(stones).query(shapely.points(points), predicate="within")[0]
+    return np.delete(points, np.unique(hidden), axis=0)

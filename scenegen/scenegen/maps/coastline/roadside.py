@@ -15,7 +15,7 @@ from scenegen.maps.coastline.relief import ROAD_HALF_M
 from scenegen.maps.coastline.workshop import CoastWorkshop
 from scenegen.parts.fixtures.erect import erect
 from scenegen.parts.fixtures.fences import fence
-from scenegen.parts.fixtures.posts import INSULATORS_M, TELEPHONE_M
+from scenegen.parts.fixtures.utility import fastenings
 from scenegen.parts.fixtures.wires import wires
 
 _BAY_M = 4.0
@@ -113,10 +113,8 @@ def _poles(line: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator) -> t
     turn = np.arctan2(direct[:, 1], direct[:, 0])
     turn = np.concatenate([turn[:1], (np.unwrap(turn)[1:] + np.unwrap(turn)[:-1]) / 2, turn[-1:]])
     parts = erect("utility_pole", foot, turn, shop, rng)
-    fastened = np.array([*INSULATORS_M, TELEPHONE_M])
-    c, s = np.cos(turn), np.sin(turn)
-    spin = np.stack([np.stack([c, -s, 0 * c]), np.stack([s, c, 0 * c]), np.stack([0 * c, 0 * c, 0 * c + 1])])
-    tops = foot[:, None] + np.einsum("ijp,wj->pwi", spin, fastened)
+    insulators, telephone = fastenings(foot, turn)
+    tops = np.concatenate([insulators, telephone[:, None]], axis=1)
     span = np.linalg.norm(direct, axis=1)
     near = np.flatnonzero(span < 2.2 * _POLE_PITCH_M)
     skin = shop.palette.only("cable_weathered")

@@ -18,8 +18,8 @@ _PLAN = 1.12
 """Plan radius of a boulder, in sizes."""
 
 
-def build_rocks(rock: str, shop: CoastWorkshop, rng: np.random.Generator) -> tuple[list[Part], int]:
-    """Rocks as parts, and their number.
+def build_rocks(rock: str, shop: CoastWorkshop, rng: np.random.Generator) -> tuple[list[Part], np.ndarray]:
+    """Rocks as parts, and their footprints: ground below them is never seen.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def build_rocks(rock: str, shop: CoastWorkshop, rng: np.random.Generator) -> tup
             parts.append(
                 place(template, position[mine], heading[mine], scale[mine], skins[mine], owner[mine])
             )
-    return parts, count
+    return parts, shapely.buffer(shapely.points(xy), 0.85 * scale[:, :2].min(axis=1), quad_segs=3)
 
 
 def _draw(shop: CoastWorkshop, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:

@@ -30,10 +30,11 @@ from scenegen.maps.coastline.workshop import CoastWorkshop
 
 @dataclass(frozen=True, eq=False)
 class Things:
-    """Parts, the holes they leave in the ground, and what was built."""
+    """Parts, the holes they leave in the ground, the stones that hide it, and what was built."""
 
     parts: tuple[Part, ...]
     holes: tuple[shapely.Polygon, ...]
+    stones: np.ndarray
     counts: tuple[tuple[str, int], ...]
 
 
@@ -82,13 +83,13 @@ def build_things(
     parts += build_huts(rows, standing_height(rows, shop), shop, hut_rng)
     roadside, counts = build_roadside(layout, shop, road_rng)
     cars, car_count = build_cars(layout, houses, shop, car_rng)
-    rocks, rock_count = build_rocks(rock, shop, rock_rng)
+    rocks, stones = build_rocks(rock, shop, rock_rng)
     boats, boat_count = build_boats(layout, sea, shop, boat_rng)
     folk, folk_count = build_folk(layout, rows, shop, folk_rng)
     parts += [*roadside, *cars, *rocks, *boats, *folk, *build_marram(shop, grass_rng)]
     size = np.full(len(rows), 2.6), np.full(len(rows), 2.2)
     huts = shapely.buffer(rectangles(rows[:, :2], *size, rows[:, 2]), -0.05, join_style="mitre")
     holes = (*(b.footprint.buffer(-0.01, join_style="mitre") for b in houses), *huts)
-    total = {"houses": len(houses), "huts": len(rows), "rocks": rock_count} | counts
+    total = {"houses": len(houses), "huts": len(rows), "rocks": len(stones)} | counts
     total |= {"cars": car_count, "boats": boat_count, "people": folk_count}
-    return Things(tuple(parts), holes, tuple(total.items()))
+    return Things(tuple(parts), holes, stones, tuple(total.items()))
