@@ -111,9 +111,7 @@ class Country:
         return ribbon(self.road, -ROAD_HALF_M, ROAD_HALF_M)
 
 
-def lay_out_country(
-    grounds: Grounds, half_m: float, knobs: FieldKnobs, rng: np.random.Generator
-) -> Country:
+def lay_out_country(grounds: Grounds, half_m: float, knobs: FieldKnobs, rng: np.random.Generator) -> Country:
     """Draw the land around the grounds.
 
     Parameters
@@ -146,9 +144,7 @@ def ribbon(line: Float64[np.ndarray, "points 2"], left_m: float, right_m: float)
     return shapely.Polygon(np.concatenate([offset_line(line, left_m), offset_line(line, right_m)[::-1]]))
 
 
-def offset_line(
-    line: Float64[np.ndarray, "points 2"], right_m: float
-) -> Float64[np.ndarray, "points 2"]:
+def offset_line(line: Float64[np.ndarray, "points 2"], right_m: float) -> Float64[np.ndarray, "points 2"]:
     """A gently bent line moved to its right, point by point."""
     step = np.gradient(line, axis=0)
     step = step / np.linalg.norm(step, axis=1)[:, None]
@@ -168,7 +164,7 @@ def _road(grounds: Grounds, half_m: float, rng: np.random.Generator) -> np.ndarr
     y = grounds.road_y_m - away * (1.0 - np.cos(x / reach))
     line = grounds.frame.world(np.column_stack([x, y]))
     inside = np.abs(line).max(axis=1) < FAR_M - 20.0
-    return line[inside]
+    return np.asarray(line[inside])
 
 
 def _farm(grounds: Grounds, half_m: float, rng: np.random.Generator) -> Farm:
@@ -187,7 +183,11 @@ def _pond(taken: shapely.Geometry, half_m: float, rng: np.random.Generator) -> P
     """The first of some drawn places that is free."""
     for _ in range(40):
         x, y = rng.uniform(-0.9 * half_m, 0.9 * half_m, 2)
-        plot = Plot(Frame(float(x), float(y), rng.uniform(0.0, np.pi)), rng.uniform(14.0, 26.0), rng.uniform(10.0, 17.0))
+        plot = Plot(
+            Frame(float(x), float(y), rng.uniform(0.0, np.pi)),
+            rng.uniform(14.0, 26.0),
+            rng.uniform(10.0, 17.0),
+        )
         if not taken.intersects(plot.outline()):
             return plot
     return None
@@ -202,7 +202,11 @@ def _parcels(
     phase = rng.uniform(0.0, 2 * np.pi, 2)
 
     def bend(xy: np.ndarray) -> np.ndarray:
-        shift = np.sin(xy @ wave + phase) * np.minimum(np.abs(np.abs(xy).max(axis=1) - FAR_M), 260.0)[:, None] * 0.07
+        shift = (
+            np.sin(xy @ wave + phase)
+            * np.minimum(np.abs(np.abs(xy).max(axis=1) - FAR_M), 260.0)[:, None]
+            * 0.07
+        )
         return np.asarray(xy + shift[:, ::-1])
 
     cuts = shapely.linestrings(np.stack(lines))
@@ -213,7 +217,9 @@ def _parcels(
     net = shapely.unary_union([edge, *(shapely.LineString(b) for b in bent)], grid_size=0.001)
     pieces = shapely.get_parts(shapely.polygonize(shapely.get_parts(net)))
     pieces = pieces[shapely.area(pieces) > 300.0]
-    return tuple(_parcel(p, c, rng) for p, c in zip(pieces, _covers(pieces, knobs, rng), strict=True)), tuple(bent)
+    return tuple(_parcel(p, c, rng) for p, c in zip(pieces, _covers(pieces, knobs, rng), strict=True)), tuple(
+        bent
+    )
 
 
 def _divide(heading_rad: float, rng: np.random.Generator) -> list[np.ndarray]:

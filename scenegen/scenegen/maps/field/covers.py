@@ -13,7 +13,12 @@ from scenegen.maps.field.country import Cover, Parcel
 from scenegen.maps.field.workshop import FieldWorkshop
 
 _DETAIL_M = 430.0
-_SWATH_M = {Cover.HAY: (5.0, 8.0), Cover.STUBBLE: (7.0, 12.0), Cover.CROP: (18.0, 26.0), Cover.PLOUGHED: (9.0, 16.0)}
+_SWATH_M = {
+    Cover.HAY: (5.0, 8.0),
+    Cover.STUBBLE: (7.0, 12.0),
+    Cover.CROP: (18.0, 26.0),
+    Cover.PLOUGHED: (9.0, 16.0),
+}
 _TRAM_M = 0.7
 
 
@@ -46,7 +51,11 @@ def _surfaces(cover: Cover, shop: FieldWorkshop, rng: np.random.Generator) -> tu
     one, two = rng.choice(len(dry), 2, replace=False)
     if cover is Cover.PLOUGHED:
         wet, bare = palette.variants("soil_wet", 2), palette.variants("soil_dry", 3)
-        return (wet[0], wet[1]) if rng.uniform() < 0.4 else (bare[int(rng.integers(3))], bare[int(rng.integers(3))])
+        return (
+            (wet[0], wet[1])
+            if rng.uniform() < 0.4
+            else (bare[int(rng.integers(3))], bare[int(rng.integers(3))])
+        )
     if cover in (Cover.STUBBLE, Cover.HAY, Cover.WOOD):
         return dry[int(one)], dry[int(two)]
     if cover is Cover.CROP and rng.uniform() < 0.45:
@@ -62,7 +71,12 @@ def _across(parcel: Parcel, pitch_m: float) -> tuple[np.ndarray, np.ndarray, np.
     along = np.array([np.cos(parcel.heading_rad), np.sin(parcel.heading_rad)])
     ring = shapely.get_coordinates(parcel.outline.exterior) - middle
     side = ring @ np.array([-along[1], along[0]])
-    return middle, along, np.arange(side.min() + 0.5 * pitch_m, side.max(), pitch_m), float(np.abs(ring @ along).max())
+    return (
+        middle,
+        along,
+        np.arange(side.min() + 0.5 * pitch_m, side.max(), pitch_m),
+        float(np.abs(ring @ along).max()),
+    )
 
 
 def _swaths(parcel: Parcel, width_m: float) -> list[shapely.Polygon]:

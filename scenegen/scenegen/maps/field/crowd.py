@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from scenegen.geometry.part import Part
-from scenegen.geometry.placement import clear_of
+from scenegen.geometry.placement import clear_of, first_come
 from scenegen.maps.field.grounds import Grounds, Pitch
 from scenegen.maps.field.stands import Seats
 from scenegen.maps.field.workshop import FieldWorkshop
@@ -42,7 +42,10 @@ def build_crowd(
     parts, count = [], 0
     placed: list[np.ndarray] = []
     for posture, rows in groups:
-        free = clear_of(shapely.points(rows[:, :2]), np.asarray([*obstacles, *placed], dtype=object), _APART_M)
+        free = clear_of(
+            shapely.points(rows[:, :2]), np.asarray([*obstacles, *placed], dtype=object), _APART_M
+        )
+        free[np.flatnonzero(free)] = first_come(shapely.buffer(shapely.points(rows[free, :2]), _APART_M / 2))
         rows = rows[free]
         placed += list(shapely.points(rows[:, :2]))
         position = np.column_stack([rows[:, :2], shop.relief(rows[:, :2])])
@@ -51,6 +54,7 @@ def build_crowd(
     share = rng.uniform(*shop.knobs.stand_occupancy)
     for row in seats:
         taken = rng.uniform(size=len(row.position)) < share
+        taken[1:] &= ~taken[:-1]  # elbow room
         position = row.position[taken]
         heading = row.heading_rad + rng.normal(0.0, 0.2, len(position))
         parts += stand(position, heading, "sitting", shop, rng)
@@ -75,9 +79,7 @@ def _players(pitch: Pitch, rng: np.random.Generator) -> list[tuple[str, np.ndarr
     rows = [("running", field[pace == 0]), ("walking", field[pace == 1])]
     rows.append(("standing", np.concatenate([field[pace == 2], keepers])))
     turn = pitch.frame.heading_rad
-    return [
-        (p, np.column_stack([pitch.frame.world(r[:, :2]), r[:, 2] + turn])) for p, r in rows if len(r)
-    ]
+    return [(p, np.column_stack([pitch.frame.world(r[:, :2]), r[:, 2] + turn])) for p, r in rows if len(r)]
 
 
 def _spread(xy: np.ndarray, heading: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

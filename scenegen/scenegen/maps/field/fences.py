@@ -20,7 +20,9 @@ _BARRIER_M, _GATE_M = 1.1, 3.4
 _NET_HALF_M, _POLE_PITCH_M, _MESH_M, _CORD_M = 20.0, 5.0, 0.12, 0.003
 
 
-def build_fences(grounds: Grounds, country: Country, shop: FieldWorkshop, rng: np.random.Generator) -> list[Part]:
+def build_fences(
+    grounds: Grounds, country: Country, shop: FieldWorkshop, rng: np.random.Generator
+) -> list[Part]:
     """All fences and ball-catching nets."""
     height, tall = rng.uniform(*shop.knobs.fence_height_m), rng.uniform(*shop.knobs.net_height_m)
     gate = shapely.LineString(grounds.access).buffer(_GATE_M)
@@ -56,7 +58,9 @@ def _farm_fence(country: Country) -> list[shapely.LineString]:
     return [shapely.LineString(paddock.exterior)]
 
 
-def _ball_net(pitch: Pitch, side: float, height_m: float, shop: FieldWorkshop, rng: np.random.Generator) -> Part:
+def _ball_net(
+    pitch: Pitch, side: float, height_m: float, shop: FieldWorkshop, rng: np.random.Generator
+) -> Part:
     """A net on poles behind a goal, one instance."""
     cord, steel = shop.palette.pick("netting_polymer", rng), shop.palette.pick("steel_galv_post", rng)
     x = side * (pitch.length_m / 2 + pitch.margin_m - 0.8)
@@ -69,7 +73,9 @@ def _ball_net(pitch: Pitch, side: float, height_m: float, shop: FieldWorkshop, r
     owner = shop.builder.new_objects()
     fence_id = int(Semantic.FENCE)
     mesh = net(panels, _MESH_M, _CORD_M, cord, fence_id, np.full(len(panels), owner), 0.1, 2)
-    poles, pole_faces = prisms(foot - np.array([0.0, 0.0, 0.3]), top + np.array([0.0, 0.0, 0.1]), 0.055, sides=8)
+    poles, pole_faces = prisms(
+        foot - np.array([0.0, 0.0, 0.3]), top + np.array([0.0, 0.0, 0.1]), 0.055, sides=8
+    )
     rope, rope_faces = prisms(top[:-1], top[1:], 0.012, sides=4)
     pole = np.repeat(np.arange(len(foot)), 16)
     rope_of = np.repeat(np.arange(len(foot) - 1), 8)

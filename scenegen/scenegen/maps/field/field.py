@@ -48,7 +48,22 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
     rng : numpy.random.Generator
         The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
     """
-    own, plan_rng, land_rng, hills, skins, houses_rng, ground, walls, gear_rng, sport, posts_rng, cars_rng, crowd_rng, far = rng.spawn(14)
+    (
+        own,
+        plan_rng,
+        land_rng,
+        hills,
+        skins,
+        houses_rng,
+        ground,
+        walls,
+        gear_rng,
+        sport,
+        posts_rng,
+        cars_rng,
+        crowd_rng,
+        far,
+    ) = rng.spawn(14)
     half = 0.5 * own.uniform(*knobs.extent_m)
     palette, builder = PaletteBuilder(skins), GeometryBuilder()
     _draw_palette(palette)
@@ -80,7 +95,9 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
     builder.add(*build_fences(grounds, country, shop, posts_rng))
     cars, car_places = build_traffic(grounds, country, half, shop, cars_rng)
     posts = np.concatenate([mast_feet, pole_feet])
-    cars_plan = rectangles(car_places[:, :2], np.full(len(car_places), 5.2), np.full(len(car_places), 2.4), car_places[:, 2])
+    cars_plan = rectangles(
+        car_places[:, :2], np.full(len(car_places), 5.2), np.full(len(car_places), 2.4), car_places[:, 2]
+    )
     obstacles = np.array([*shapely.points(posts), *cars_plan, *footprints], dtype=object)
     people, people_count = build_crowd(grounds, seats, obstacles, shop, crowd_rng)
     distant, groves, farm_houses = far_objects(country, half, shop, far)

@@ -76,7 +76,9 @@ def _net_panels() -> np.ndarray:
 def corner_flag() -> Template:
     """A post of 1.5 m with a small flag. Slots: 0 post, 1 cloth."""
     model = Modeller()
-    model.tube(np.array([0, 0, -0.08]), np.array([0, 0, 1.5]), 0.018, 0.018, 0, Semantic.POLE, sides=6, sites=2)
+    model.tube(
+        np.array([0, 0, -0.08]), np.array([0, 0, 1.5]), 0.018, 0.018, 0, Semantic.POLE, sides=6, sites=2
+    )
     flag = np.array([[0.018, 0.0, 1.48], [0.42, 0.05, 1.33], [0.018, 0.0, 1.18]])
     for side, turn in ((1.0, 1), (-1.0, -1)):
         site = model.site(flag.mean(axis=0), np.array([0.0, -side, 0.0]))

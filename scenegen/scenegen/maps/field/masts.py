@@ -13,7 +13,8 @@ from scenegen.maps.field.country import ROAD_HALF_M, Country
 from scenegen.maps.field.grounds import Grounds, Pitch
 from scenegen.maps.field.workshop import FieldWorkshop
 from scenegen.parts.fixtures.erect import erect
-from scenegen.parts.fixtures.posts import INSULATORS_M, TELEPHONE_M, floodlight_mast
+from scenegen.parts.fixtures.posts import floodlight_mast
+from scenegen.parts.fixtures.utility import fastenings
 from scenegen.parts.fixtures.wires import wires
 
 _BESIDE_M, _SPAN_M = 4.2, 42.0
@@ -29,7 +30,9 @@ def mast_spots(grounds: Grounds, pitch: Pitch) -> np.ndarray:
     return pitch.frame.world(np.array([[-x, -y], [x, -y], [x, y], [-x, y]]))
 
 
-def build_masts(grounds: Grounds, shop: FieldWorkshop, rng: np.random.Generator) -> tuple[list[Part], np.ndarray]:
+def build_masts(
+    grounds: Grounds, shop: FieldWorkshop, rng: np.random.Generator
+) -> tuple[list[Part], np.ndarray]:
     """Four masts at every lit pitch, and their feet in the plan."""
     parts, feet = [], [np.zeros((0, 2))]
     for pitch in grounds.pitches:
@@ -60,8 +63,9 @@ def build_power_line(
     parts += erect("transformer_pole", position[drum], heading[drum], shop, rng)
     cable = shop.palette.pick("cable_weathered", rng)
     slack = rng.uniform(0.012, 0.022)
-    for fastening, radius in (*((p, 0.006) for p in INSULATORS_M), (TELEPHONE_M, 0.013)):
-        hang = position + _turned(np.array(fastening), heading)
+    insulators, telephone = fastenings(position, heading)
+    hangs = [(insulators[:, k], 0.006) for k in range(insulators.shape[1])]
+    for hang, radius in (*hangs, (telephone, 0.013)):
         span = np.linalg.norm(np.diff(hang, axis=0), axis=1)
         owner = shop.builder.new_objects() + np.zeros(len(span), np.int64)
         wire = int(Semantic.WIRE)
@@ -86,13 +90,6 @@ def _right_of_road(country: Country) -> bool:
     k = int(np.argmin(np.linalg.norm(country.road - middle, axis=1)))
     step, aside = country.road[k + 1] - country.road[k], middle - country.road[k]
     return bool(step[0] * aside[1] - step[1] * aside[0] < 0.0)
-
-
-def _turned(local: np.ndarray, heading: np.ndarray) -> np.ndarray:
-    """A local point of each pole in world directions (poles, 3)."""
-    c, s = np.cos(heading), np.sin(heading)
-    x, y, z = local
-    return np.column_stack([c * x - s * y, s * x + c * y, np.full(len(c), z)])
 
 
 def build_flags(grounds: Grounds, shop: FieldWorkshop, rng: np.random.Generator) -> list[Part]:

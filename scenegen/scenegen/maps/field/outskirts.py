@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import shapely
 
@@ -17,6 +19,7 @@ from scenegen.maps.field.workshop import FieldWorkshop
 
 _WALLS = ("stucco_render", "brick_red", "stucco_render", "wood_siding")
 _ROOFS = ("clay_roof_tile", "clay_roof_tile", "slate_roof", "metal_roof_painted_mid")
+_FINE_M = 750.0
 _LEVELS_M = (0.0, 450.0, 700.0, 1100.0, 1700.0, 1e9)
 
 
@@ -27,10 +30,12 @@ def far_objects(
     near = shapely.box(-half_m, -half_m, half_m, half_m).buffer(4.0)
     houses, plan = _farms(country, near, shop, rng)
     spots = np.concatenate([_woods(country, rng), _lines(country, shop, rng)])
-    crowns = shapely.buffer(shapely.points(spots[:, :2]), 0.36 * spots[:, 2], quad_segs=3)
+    crowns = shapely.buffer(shapely.points(spots[:, :2]), 0.33 * spots[:, 2], quad_segs=3)
     taken = np.array([near, country.carriageway.buffer(1.0), country.corridor, *plan], dtype=object)
-    spots = spots[clear_of(crowns, taken, 1.0)]
-    return [_groves(spots, shop, rng), *houses], len(spots), len(plan)
+    keep = clear_of(crowns, taken, 1.0) & (np.abs(spots[:, :2]).max(axis=1) < FAR_M - 40.0)
+    keep[np.flatnonzero(keep)] = first_come(crowns[keep])
+    spots = spots[keep]
+    return [*_groves(spots, shop, rng), *houses], len(spots), len(plan)
 
 
 def _pitch_m(reach: np.ndarray | float) -> np.ndarray:
@@ -45,13 +50,13 @@ def _woods(country: Country, rng: np.random.Generator) -> np.ndarray:
         return np.zeros((0, 4))
     shapely.prepare(woods)
     rows = [np.zeros((0, 4))]
-    for low, high in zip(_LEVELS_M[:-1], _LEVELS_M[1:], strict=True):
+    for low, high in pairwise(_LEVELS_M):
         reach = min(high, FAR_M)
         pitch = float(_pitch_m(0.5 * (low + reach)))
         xy = hexagonal(-reach, -reach, reach, reach, pitch, rng, 0.3)
         far = np.abs(xy).max(axis=1)
         xy = xy[(far >= low) & (far < reach) & shapely.contains_xy(woods, xy)]
-        size = pitch * rng.uniform(1.15, 1.6, len(xy))
+        size = pitch * rng.uniform(1.1, 1.45, len(xy))
         rows.append(np.column_stack([xy, size, rng.uniform(10.0, 19.0, len(xy))]))
     return np.concatenate(rows)
 
@@ -74,13 +79,18 @@ def _lines(country: Country, shop: FieldWorkshop, rng: np.random.Generator) -> n
     return np.concatenate(rows)
 
 
-def _groves(spots: np.ndarray, shop: FieldWorkshop, rng: np.random.Generator) -> Part:
+def _groves(spots: np.ndarray, shop: FieldWorkshop, rng: np.random.Generator) -> list[Part]:
+    """Masses of trees, finer ones nearby."""
     leaves = np.array(shop.palette.variants("tree_crown"))
     skin = leaves[rng.integers(len(leaves), size=len(spots))][:, None]
     position = np.column_stack([spots[:, :2], shop.relief(spots[:, :2])])
-    scale = spots[:, [2, 2, 3]]
+    scale, heading = spots[:, [2, 2, 3]], rng.uniform(0.0, 2 * np.pi, len(spots))
     owner = shop.builder.new_objects(len(spots)) + np.arange(len(spots))
-    return place(thicket(rng), position, rng.uniform(0.0, 2 * np.pi, len(spots)), scale, skin, owner)
+    near = np.linalg.norm(spots[:, :2], axis=1) < _FINE_M
+    return [
+        place(thicket(rng, fine), position[k], heading[k], scale[k], skin[k], owner[k])
+        for fine, k in ((True, near), (False, ~near))
+    ]
 
 
 def _farms(

@@ -85,7 +85,9 @@ def _worn_spots(pitch: Pitch, rng: np.random.Generator) -> list[tuple[shapely.Po
 
 def _lumpy_ring(rng: np.random.Generator) -> np.ndarray:
     angle = np.linspace(0.0, 2 * np.pi, 18, endpoint=False)
-    shape = 1.0 + 0.16 * np.cos(2 * angle + rng.uniform(0, 6.0)) + 0.1 * np.cos(3 * angle + rng.uniform(0, 6.0))
+    shape = (
+        1.0 + 0.16 * np.cos(2 * angle + rng.uniform(0, 6.0)) + 0.1 * np.cos(3 * angle + rng.uniform(0, 6.0))
+    )
     return np.asarray(shape[:, None] * np.column_stack([np.cos(angle), np.sin(angle)]))
 
 

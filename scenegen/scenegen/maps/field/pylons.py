@@ -43,13 +43,11 @@ def draw_line(
         strip = shapely.LineString(feet).buffer(CORRIDOR_M)
         towers = shapely.union_all(shapely.buffer(shapely.points(feet), 6.0))
         if not taken.intersects(strip) and not taken.buffer(8.0).intersects(towers):
-            return feet
+            return np.asarray(feet)
     return None
 
 
-def build_pylons(
-    feet: np.ndarray, shop: FieldWorkshop, rng: np.random.Generator
-) -> list[Part]:
+def build_pylons(feet: np.ndarray, shop: FieldWorkshop, rng: np.random.Generator) -> list[Part]:
     """Towers at the given feet and the wires between them."""
     step = feet[-1] - feet[0]
     heading = np.full(len(feet), np.arctan2(step[1], step[0]))
@@ -99,7 +97,9 @@ def lattice_tower() -> Template:
 
 def _half_width(z: np.ndarray) -> np.ndarray:
     """Half the side of the tower's square section at a height [m]."""
-    return np.asarray(np.interp(z, [0.0, _WAIST_Z, 33.5, HEIGHT_M], [_BASE_M, _WAIST_M, _WAIST_M * 0.8, 0.05]))
+    return np.asarray(
+        np.interp(z, [0.0, _WAIST_Z, 33.5, HEIGHT_M], [_BASE_M, _WAIST_M, _WAIST_M * 0.8, 0.05])
+    )
 
 
 def _members() -> tuple[np.ndarray, np.ndarray]:
@@ -110,7 +110,9 @@ def _members() -> tuple[np.ndarray, np.ndarray]:
     z = np.array([-_FOOT_M, *level[1:], HEIGHT_M])
     w = _half_width(z)
     corner = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-    nodes = np.concatenate([corner[None] * w[:, None, None], np.broadcast_to(z[:, None, None], (len(z), 4, 1))], axis=2)
+    nodes = np.concatenate(
+        [corner[None] * w[:, None, None], np.broadcast_to(z[:, None, None], (len(z), 4, 1))], axis=2
+    )
     legs = np.stack([nodes[:-1], nodes[1:]], axis=2).reshape(-1, 2, 3)
     turned = np.roll(nodes, -1, axis=1)
     panels = slice(0, len(z) - 2)
@@ -133,6 +135,8 @@ def _arms() -> np.ndarray:
             high = [[x, side * w, z + 1.5] for x in (-w, w)]
             rows += [(p, tip) for p in (*low, *high)]
             for share in (0.25, 0.5, 0.75):
-                below, above = (((1 - share) * np.array(p) + share * np.array(tip)).tolist() for p in (low, high))
+                below, above = (
+                    ((1 - share) * np.array(p) + share * np.array(tip)).tolist() for p in (low, high)
+                )
                 rows += [(below[0], above[0]), (below[1], above[1]), (below[0], below[1])]
     return np.array(rows, np.float64)

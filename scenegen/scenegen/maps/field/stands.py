@@ -63,7 +63,9 @@ def build_stand(stand: Stand, shop: FieldWorkshop, rng: np.random.Generator) -> 
     row, block = (g.ravel() for g in np.meshgrid(np.arange(stand.rows), np.arange(len(x)), indexing="ij"))
     local = np.column_stack([x[block], AISLE_M + row * TREAD_M + SEAT_Y_M, row_height_m(row)])
     parts.append(_copies(seat_block(), local, stand, ground, plastic, owner))
-    row, stair = (g.ravel() for g in np.meshgrid(np.arange(stand.rows), np.arange(len(stairs)), indexing="ij"))
+    row, stair = (
+        g.ravel() for g in np.meshgrid(np.arange(stand.rows), np.arange(len(stairs)), indexing="ij")
+    )
     at = np.column_stack([stairs[stair], AISLE_M + row * TREAD_M - TREAD_M / 4, row_height_m(row) - RISE_M])
     parts.append(_copies(half_step(), at, stand, ground, concrete, owner))
     parts.append(_copies(entrance(), _entrances(stand), stand, ground, concrete, owner))
@@ -110,7 +112,9 @@ def _shell(stand: Stand) -> tuple[np.ndarray, np.ndarray]:
         quads.append([[-a, y1, -_BELOW_M], [-a, y0, -_BELOW_M], [-a, y0, z], [-a, y1, z]])
     back, top, seat = edge[-1], height[-1] + _WALL_M, height[-1]
     quads.append([[a, back, -_BELOW_M], [-a, back, -_BELOW_M], [-a, back, top], [a, back, top]])
-    quads.append([[-a, back - 0.18, seat], [a, back - 0.18, seat], [a, back - 0.18, top], [-a, back - 0.18, top]])
+    quads.append(
+        [[-a, back - 0.18, seat], [a, back - 0.18, seat], [a, back - 0.18, top], [-a, back - 0.18, top]]
+    )
     quads.append([[-a, back - 0.18, top], [a, back - 0.18, top], [a, back, top], [-a, back, top]])
     for x, turn in ((a, 1), (-a, -1)):
         quads.append([[x, back - 0.18, seat], [x, back, seat], [x, back, top], [x, back - 0.18, top]][::turn])
@@ -162,7 +166,11 @@ def seat_block() -> Template:
 
 
 def _slab(
-    model: Modeller, low: tuple[float, float, float], high: tuple[float, float, float], site: int, behind: int = -1
+    model: Modeller,
+    low: tuple[float, float, float],
+    high: tuple[float, float, float],
+    site: int,
+    behind: int = -1,
 ) -> None:
     """A closed box whose faces share one site, or two: those that look along +y take `behind`."""
     (x0, y0, z0), (x1, y1, z1) = low, high

@@ -63,9 +63,7 @@ def build_terrain(
     solid = list(shapely.get_parts(holes))
     hollow = [Region(p, coarse[0].surface, 0, 0, hole=True) for p in solid]
     regions = [*coarse, *fine, *hollow]
-    spacing = np.repeat(
-        [_LINE_SPACING_M, _FINE_LINE_M, _CONTACT_M], [len(coarse), len(fine), len(hollow)]
-    )
+    spacing = np.repeat([_LINE_SPACING_M, _FINE_LINE_M, _CONTACT_M], [len(coarse), len(fine), len(hollow)])
     points = np.concatenate([contact_points(solid, _CONTACT_M, 0.9), _lattice(grounds, half_m, rng)])
     plan = triangulate([r.outline for r in regions], points, spacing, (1.15 * half_m, 0.09))
     return drape(plan, regions, shop.relief)
@@ -85,7 +83,9 @@ def _lattice(grounds: Grounds, half_m: float, rng: np.random.Generator) -> np.nd
         outer = min(factor * half_m, FAR_M - 0.4 * spacing)
         ring = hexagonal(-outer, -outer, outer, outer, spacing, rng)
         reach = np.abs(ring).max(axis=1)
-        rows.append(ring[(reach > inner + 0.4 * spacing) & (reach < outer) & ~shapely.contains_xy(outline, ring)])
+        rows.append(
+            ring[(reach > inner + 0.4 * spacing) & (reach < outer) & ~shapely.contains_xy(outline, ring)]
+        )
         inner = outer
     return np.concatenate(rows)
 
@@ -107,13 +107,19 @@ def _grounds_regions(grounds: Grounds, shop: FieldWorkshop, rng: np.random.Gener
         if room.contains(spot):
             regions.append(Region(spot, worn, int(Semantic.GRASS), green))
     regions += [Region(p, paving, walk, walks) for p in _walks(grounds)]
-    regions += [Region(p, paving, walk, paved) for p in shapely.get_parts(shapely.union_all([grounds.forecourt, *apron]))]
+    regions += [
+        Region(p, paving, walk, paved)
+        for p in shapely.get_parts(shapely.union_all([grounds.forecourt, *apron]))
+    ]
     return [*regions, Region(grounds.car_park.outline(0.8), gravel, road, parking)]
 
 
 def _walks(grounds: Grounds) -> list[shapely.Polygon]:
     """Footpaths, and a gravelled strip around the main field where it has no track."""
-    lines = [shapely.LineString(p).buffer(_PATH_HALF_M, cap_style="flat", join_style="mitre") for p in grounds.paths]
+    lines = [
+        shapely.LineString(p).buffer(_PATH_HALF_M, cap_style="flat", join_style="mitre")
+        for p in grounds.paths
+    ]
     half_x, half_y = grounds.half_m
     ring = Plot(grounds.frame, half_x + 0.9, half_y + 0.9)
     if not grounds.track:
@@ -136,7 +142,9 @@ def _country_regions(country: Country, shop: FieldWorkshop, rng: np.random.Gener
         regions.append(Region(outline.buffer(1.1), bank, dirt, shop.builder.new_objects()))
         regions.append(Region(outline, skin, int(Semantic.WATER), water, level, absolute=True))
     regions.append(Region(ribbon(country.road, -ROAD_HALF_M - 0.9, ROAD_HALF_M + 0.9), soil, dirt, yard))
-    return regions + [Region(p, asphalt, int(Semantic.ROAD), road) for p in (country.drive, country.carriageway)]
+    return regions + [
+        Region(p, asphalt, int(Semantic.ROAD), road) for p in (country.drive, country.carriageway)
+    ]
 
 
 def pond_outline(plot: Plot) -> shapely.Polygon:
@@ -155,7 +163,10 @@ def _markings(grounds: Grounds, country: Country, half_m: float, shop: FieldWork
     road = country.road[np.flatnonzero(near)[0] : np.flatnonzero(near)[-1] + 1]
     edge = ROAD_HALF_M - 0.25
     quads = [_pieces(road, -0.06, 0.06)[::3], _pieces(road, -edge - 0.06, -edge + 0.06)]
-    quads += [_pieces(road, edge - 0.06, edge + 0.06), grounds.car_park.frame.world(bay_lines(grounds.car_park))]
+    quads += [
+        _pieces(road, edge - 0.06, edge + 0.06),
+        grounds.car_park.frame.world(bay_lines(grounds.car_park)),
+    ]
     return [Region(q, paint, mark, owner, lumped=True) for q in shapely.polygons(np.concatenate(quads))]
 
 

@@ -38,7 +38,9 @@ def oval(radius_m: float) -> np.ndarray:
 
 def track_regions(frame: Frame, shop: FieldWorkshop, rng: np.random.Generator) -> list[Region]:
     """Rubber ring, the lines between lanes and the finish, on top of everything else."""
-    rubber = shop.palette.special("artificial_turf", "running track", solar_absorptance=rng.uniform(0.66, 0.8))
+    rubber = shop.palette.special(
+        "artificial_turf", "running track", solar_absorptance=rng.uniform(0.66, 0.8)
+    )
     paint = shop.palette.special("artificial_turf", "line", solar_absorptance=0.45)
     owner, lines = shop.builder.new_objects(), shop.builder.new_objects()
     sport = int(Semantic.SPORTS_SURFACE)
