@@ -1,4 +1,4 @@
-"""People: two teams and a referee on the pitch, spectators on seats, players training, others on paths."""
+"""People who stay where they are: spectators on seats and at the rail, goalkeepers, some on the forecourt."""
 
 from __future__ import annotations
 
@@ -31,13 +31,12 @@ def build_crowd(
     grounds : Grounds
     seats : sequence of Seats
     obstacles : array of shapely geometries
-        Vehicles, posts and buildings that people keep clear of.
+        Vehicles, posts, buildings and footpaths that people keep clear of.
     shop : FieldWorkshop
     rng : numpy.random.Generator
     """
     groups: list[tuple[str, np.ndarray]] = []
-    for pitch in grounds.pitches:
-        groups += _players(pitch, rng)
+    groups.append(("standing", _keepers(grounds.pitches[0], rng)))
     groups += _bystanders(grounds, shop, rng)
     parts, count = [], 0
     placed: list[np.ndarray] = []
@@ -62,31 +61,12 @@ def build_crowd(
     return parts, count
 
 
-def _players(pitch: Pitch, rng: np.random.Generator) -> list[tuple[str, np.ndarray]]:
-    """Two lines-ups around the ball, keepers in the goals; on training pitches a few groups, or nobody."""
-    if not pitch.main and rng.uniform() < 0.4:
-        return []
-    count = int(rng.integers(9, 12)) * 2 if pitch.main else int(rng.integers(6, 18))
-    a, b = pitch.length_m / 2, pitch.width_m / 2
-    ball = rng.uniform([-0.6 * a, -0.6 * b], [0.6 * a, 0.6 * b])
-    xy = ball * rng.uniform(0.2, 1.0, (count, 1)) + rng.normal(size=(count, 2)) * np.array([17.0, 13.0])
-    xy = np.clip(xy, [-a + 2.0, -b + 1.0], [a - 2.0, b - 1.0])
-    towards = np.arctan2(ball[1] - xy[:, 1], ball[0] - xy[:, 0]) + rng.normal(0.0, 0.7, count)
-    xy, towards = _spread(xy, towards)
-    keepers = np.array([[-a + 1.5, rng.normal(0.0, 1.0), 0.0], [a - 1.5, rng.normal(0.0, 1.0), np.pi]])
-    field = np.column_stack([xy, towards])
-    pace = rng.choice(3, len(field), p=[0.45, 0.3, 0.25])
-    rows = [("running", field[pace == 0]), ("walking", field[pace == 1])]
-    rows.append(("standing", np.concatenate([field[pace == 2], keepers])))
-    turn = pitch.frame.heading_rad
-    return [(p, np.column_stack([pitch.frame.world(r[:, :2]), r[:, 2] + turn])) for p, r in rows if len(r)]
-
-
-def _spread(xy: np.ndarray, heading: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Drop whoever stands closer than an arm's length to someone before him."""
-    gap = np.linalg.norm(xy[:, None] - xy[None], axis=2)
-    close = np.tril(gap < 1.4, -1).any(axis=1)
-    return xy[~close], heading[~close]
+def _keepers(pitch: Pitch, rng: np.random.Generator) -> np.ndarray:
+    """Two goalkeepers before their goals: x, y, heading."""
+    a = pitch.length_m / 2 - 1.2
+    local = np.column_stack([[-a, a], rng.normal(0.0, 1.0, 2)])
+    turn = pitch.frame.heading_rad + np.array([0.0, np.pi])
+    return np.column_stack([pitch.frame.world(local), turn])
 
 
 def _bystanders(
@@ -107,6 +87,5 @@ def _bystanders(
     rail = rail[~(main & (side < 0))]
     x0, y0, x1, y1 = shapely.transform(grounds.forecourt, grounds.frame.local).bounds
     about = rng.uniform((x0 + 1.0, y0 + 1.0), (x1 - 1.0, y1 - 1.0), (count - watching, 2))
-    about, heading = _spread(about, rng.uniform(0.0, 2 * np.pi, len(about)))
-    court = np.column_stack([grounds.frame.world(about), heading])
-    return [("standing", rail), ("walking", court[::2]), ("standing", court[1::2])]
+    court = np.column_stack([grounds.frame.world(about), rng.uniform(0.0, 2 * np.pi, len(about))])
+    return [("standing", rail), ("standing", court)]

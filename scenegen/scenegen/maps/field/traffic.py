@@ -1,46 +1,46 @@
-"""Cars in the car park and on the road, a coach, machines at the barn."""
+"""Vehicles that stand: cars and a coach in the car park, a truck and a car at the farm."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from scenegen.geometry.part import Part
-from scenegen.geometry.placement import along, first_come, rectangles
+from scenegen.geometry.placement import rectangles
 from scenegen.geometry.relief import slopes
 from scenegen.maps.field.country import Country
 from scenegen.maps.field.grounds import Grounds
 from scenegen.maps.field.workshop import FieldWorkshop
 from scenegen.parts.vehicles.park import park, size_m
 
-_BAY_M, _MODULE_M, _LANE_M = 2.7, 16.6, 1.55
+_BAY_M, _MODULE_M = 2.7, 16.6
 _JUST_ARRIVED = 0.12
 
 
 def build_traffic(
-    grounds: Grounds, country: Country, half_m: float, shop: FieldWorkshop, rng: np.random.Generator
+    grounds: Grounds, country: Country, shop: FieldWorkshop, rng: np.random.Generator
 ) -> tuple[list[Part], np.ndarray]:
-    """All vehicles, and their places in the plan (x, y, heading)."""
+    """All vehicles, and their plans as an array of polygons."""
     bays = _in_bays(grounds, shop, rng)
     fresh = rng.uniform(size=len(bays)) < _JUST_ARRIVED
     van = rng.uniform(size=len(bays)) < 0.08
-    road, kind = _on_road(country, half_m, shop, rng)
-    yard = _at_farm(country, rng)
+    yard, coach = _at_farm(country, rng), _coach(grounds, rng)
     parts: list[Part] = []
+    plans = [np.zeros(0, dtype=object)]
     for name, rows, driven in (
         ("car", bays[~van & ~fresh], False),
         ("car", bays[~van & fresh], True),
         ("van", bays[van], False),
-        ("car", road[kind == 0], True),
-        ("van", road[kind == 1], True),
-        ("truck", road[kind == 2], True),
-        ("bus", _coach(grounds, rng), False),
+        ("bus", coach, False),
         ("truck", yard[:1], False),
         ("car", yard[1:], False),
     ):
         if len(rows):
             position = np.column_stack([rows[:, :2], shop.relief(rows[:, :2])])
+            length, width, _ = size_m(name)
+            size = np.ones(len(rows))
+            plans.append(rectangles(rows[:, :2], length * size, width * size, rows[:, 2]))
             parts += park(name, position, rows[:, 2], slopes(shop.relief, rows[:, :2]), shop, rng, driven)
-    return parts, np.concatenate([bays, road, yard])
+    return parts, np.concatenate(plans)
 
 
 def _in_bays(grounds: Grounds, shop: FieldWorkshop, rng: np.random.Generator) -> np.ndarray:
@@ -65,29 +65,6 @@ def _coach(grounds: Grounds, rng: np.random.Generator) -> np.ndarray:
     plot = grounds.car_park
     at = plot.frame.world(np.array([[0.0, plot.half_y_m - 2.2]]))[0]
     return np.array([[at[0], at[1], plot.frame.heading_rad + (0.0 if rng.uniform() < 0.5 else np.pi)]])
-
-
-def _on_road(
-    country: Country, half_m: float, shop: FieldWorkshop, rng: np.random.Generator
-) -> tuple[np.ndarray, np.ndarray]:
-    """Places and headings of cars, vans and trucks (0, 1, 2) in both lanes."""
-    rate = rng.uniform(*shop.knobs.road_cars_per_100_m)
-    near = np.flatnonzero(np.abs(country.road).max(axis=1) < 1.3 * half_m)
-    line = country.road[near[0] : near[-1] + 1]
-    length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
-    rows = [np.zeros((0, 3))]
-    for side in (1.0, -1.0):
-        mark = np.arange(12.0, length - 12.0, 16.0)
-        mark = mark[rng.uniform(size=len(mark)) < rate * 16.0 / 100.0]
-        mark = mark + rng.uniform(-3.0, 3.0, len(mark))
-        xy, heading = along(line, mark, np.full(len(mark), side * _LANE_M))
-        rows.append(np.column_stack([xy, heading + (0.0 if side > 0 else np.pi)]))
-    table = np.concatenate(rows)
-    kind = rng.choice(3, len(table), p=[0.8, 0.12, 0.08])
-    sizes = np.array([size_m(k)[:2] for k in ("car", "van", "truck")])[kind].reshape(-1, 2)
-    shapes = rectangles(table[:, :2], sizes[:, 0] + 1.5, sizes[:, 1] + 0.3, table[:, 2])
-    keep = first_come(shapes)
-    return table[keep], kind[keep]
 
 
 def _at_farm(country: Country, rng: np.random.Generator) -> np.ndarray:
