@@ -9,8 +9,8 @@ from jaxtyping import Float64, Int64
 def loft_faces(rings: int, points: int, closed: bool = True) -> Int64[np.ndarray, "faces 3"]:
     """Triangles between neighbouring rings of equally many points.
 
-    Counter-clockwise seen from outside if rings turn counter-clockwise seen against the direction in which they
-    follow each other, i.e. looking back from the next ring.
+    Counter-clockwise seen from outside if rings turn counter-clockwise for somebody who stands at the last ring and
+    looks back at the first.
 
     Parameters
     ----------

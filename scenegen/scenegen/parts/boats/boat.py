@@ -18,9 +18,9 @@ from scenegen.parts.skin import Skin
 KINDS = ("rowing", "sailing", "motor", "fishing")
 
 _SHAPES = {
-    "rowing": HullShape(4.2, 1.5, 0.18, (0.48, 0.4, 0.62), 0.68, 0.25, floor_m=0.06),
+    "rowing": HullShape(4.2, 1.5, 0.18, (0.48, 0.4, 0.62), 0.68, 0.25, floor_m=0.06, decked=0.0),
     "sailing": HullShape(9.4, 3.0, 0.45, (0.85, 0.9, 1.15), 0.6, 0.7),
-    "motor": HullShape(6.4, 2.3, 0.35, (0.75, 0.8, 1.05), 0.9, 0.8),
+    "motor": HullShape(6.4, 2.3, 0.35, (0.75, 0.8, 1.05), 0.9, 0.8, floor_m=0.2, decked=0.42),
     "fishing": HullShape(11.5, 3.8, 0.8, (1.1, 1.15, 2.1), 0.85, 0.7),
 }
 _HEIGHT_M = {"rowing": 0.75, "sailing": 12.6, "motor": 1.75, "fishing": 6.2}
@@ -57,8 +57,8 @@ def _at(*xyz: float) -> np.ndarray:
 
 
 def _rowing(skin: Skin, running: bool) -> None:
-    for x in (-1.45, -0.35, 0.8):
-        skin.box((x, -0.62, 0.26), (x + 0.24, 0.62, 0.3), DECK)
+    for x, half in ((-1.45, 0.53), (-0.35, 0.61), (0.8, 0.5)):
+        skin.box((x, -half, 0.26), (x + 0.24, half, 0.3), DECK)
     for side in (-1.0, 1.0):
         swing = 0.5 if running else 0.08
         lock = _at(-0.1, side * 0.74, 0.46)
@@ -161,19 +161,20 @@ def _rails(skin: Skin) -> None:
 
 
 def _motor(skin: Skin, running: bool) -> None:
-    _cabin(skin, 0.2, 2.0, (0.85, 0.7), (0.82, 1.15), False)
-    screen = np.array([[0.35, -0.75, 1.12], [0.9, -0.55, 1.12], [0.9, 0.55, 1.12], [0.35, 0.75, 1.12]])
-    high = screen * [1.0, 0.92, 1.0] + [-0.3, 0.0, 0.5]
+    _cabin(skin, 0.6, 2.1, (0.8, 0.65), (0.82, 1.12), False)
+    screen = np.array([[0.35, -0.95, 0.82], [1.0, -0.75, 0.86], [1.0, 0.75, 0.86], [0.35, 0.95, 0.82]])
+    high = screen * [1.0, 0.9, 1.0] + np.array([-0.35, 0.0, 0.6])
     points = np.concatenate([screen, high])
     faces = np.array([[0, 1, 5], [0, 5, 4], [1, 2, 6], [1, 6, 5], [2, 3, 7], [2, 7, 6]])
-    skin.site(GLASS, _at(0.85, 0.0, 1.45), _at(1.0, 0.0, 0.6))
-    skin.site(GLASS, _at(0.5, 0.0, 1.45), _at(-1.0, 0.0, -0.3))
+    skin.site(GLASS, (0.85, 0.0, 1.2), (1.0, 0.0, 0.6))
+    skin.site(GLASS, (0.8, 0.0, 1.2), (-1.0, 0.0, -0.3))
     skin.add(points, faces, GLASS)
-    skin.add(points - [0.012, 0, 0], faces[:, ::-1], GLASS)
-    for y in (-0.55, 0.15):
-        skin.box((-0.75, y, 0.8), (-0.3, y + 0.42, 1.12), DECK)
-        skin.box((-0.85, y, 1.1), (-0.75, y + 0.42, 1.5), DECK)
-    skin.box((-2.5, -0.85, 0.8), (-2.05, 0.85, 1.1), DECK)
+    skin.add(points - np.array([0.012, 0.0, 0.0]), faces[:, ::-1], GLASS)
+    skin.box((0.1, -0.8, 0.2), (0.5, 0.8, 0.88), DECK)
+    for y in (-0.6, 0.18):
+        skin.box((-0.75, y, 0.2), (-0.3, y + 0.42, 0.62), DECK)
+        skin.box((-0.85, y, 0.2), (-0.75, y + 0.42, 1.1), DECK)
+    skin.box((-2.75, -0.85, 0.2), (-2.25, 0.85, 0.62), DECK)
     _outboard(skin, -3.3)
 
 

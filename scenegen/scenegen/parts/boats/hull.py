@@ -1,10 +1,11 @@
-"""Hulls: lofts from transom to stem, decked or open, floating at z = 0."""
+"""Hulls: lofts from transom to stem, decked, open or half decked, floating at z = 0."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float64
 
 from scenegen.parts.boats.slots import DECK, HULL
 from scenegen.parts.lofts import loft_faces
@@ -28,8 +29,10 @@ class HullShape:
         Width of the stern as a share of the beam.
     rake_m : float
         How far the stem leans forwards over its foot.
-    floor_m : float or None
-        Height of the inner bottom of an open boat; None for a deck.
+    floor_m : float
+        Height of the inner bottom where the boat is open.
+    decked : float
+        Share of the length, from the stem, that has a deck: 1 a decked boat, 0 an open one.
     """
 
     length_m: float
@@ -38,33 +41,71 @@ class HullShape:
     freeboard_m: tuple[float, float, float]
     transom: float
     rake_m: float
-    floor_m: float | None = None
+    floor_m: float = 0.0
+    decked: float = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Lines:
+    """The lines of a hull, one entry per station from the transom to the stem.
+
+    Attributes
+    ----------
+    x, half, sheer, keel, rake : float64 (stations,)
+        Place along the boat, half-beam at the edge, heights of edge and keel, and how far the keel lies behind the
+        edge [m].
+    """
+
+    x: Float64[np.ndarray, "stations"]
+    half: Float64[np.ndarray, "stations"]
+    sheer: Float64[np.ndarray, "stations"]
+    keel: Float64[np.ndarray, "stations"]
+    rake: Float64[np.ndarray, "stations"]
+
+    @staticmethod
+    def of(shape: HullShape) -> _Lines:
+        t = np.linspace(0.0, 1.0, _STATIONS)
+        freeboard = np.interp(t, [0.0, 0.5, 1.0], shape.freeboard_m)
+        fore = np.clip((1.0 - t) / 0.35, 0.0, 1.0) ** 0.6
+        aft = 0.45 + 0.55 * np.sin(np.pi * np.clip(t + 0.2, 0.0, 0.5))
+        return _Lines(
+            x=(t - 0.5) * shape.length_m,
+            half=shape.beam_m / 2 * _plan(t, shape.transom),
+            sheer=freeboard - 0.06 * shape.freeboard_m[1] * np.sin(np.pi * t),
+            keel=-shape.draught_m * fore * aft,
+            rake=shape.rake_m * np.clip((t - 0.7) / 0.3, 0.0, 1.0) ** 2,
+        )
+
+    def row(self, across: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """Points at heights, drawn back with the stem's rake below the edge, (stations, 3)."""
+        down = np.clip((self.sheer - z) / np.maximum(self.sheer - self.keel, 0.05), 0.0, 1.0)
+        return np.column_stack([self.x - self.rake * down, across, z])
 
 
 def hull(skin: Skin, shape: HullShape) -> None:
     """Add a hull and its sites."""
-    t = np.linspace(0.0, 1.0, _STATIONS)
-    x = (t - 0.5) * shape.length_m
-    half = shape.beam_m / 2 * _plan(t, shape.transom)
-    sheer = np.interp(t, [0.0, 0.5, 1.0], shape.freeboard_m) - 0.06 * np.sin(np.pi * t) * shape.freeboard_m[1]
-    keel = (
-        -shape.draught_m
-        * np.clip((1.0 - t) / 0.35, 0.0, 1.0) ** 0.6
-        * (0.45 + 0.55 * np.sin(np.pi * np.clip(t + 0.2, 0, 0.5)))
-    )
-    rake = shape.rake_m * np.clip((t - 0.7) / 0.3, 0.0, 1.0) ** 2
-    chine_y, chine_z = 0.78 * half, 0.35 * keel
-    _sites(skin, shape)
-    rows = [(0.0 * half, keel, -rake), (chine_y, chine_z, -0.55 * rake), (half, sheer, 0.0 * rake)]
+    lines = _Lines.of(shape)
+    chine = 0.35 * lines.keel
     for side in (-1.0, 1.0):
-        points = np.stack([np.column_stack([x + dx, side * y, z]) for y, z, dx in rows], axis=1)
+        rows = [
+            lines.row(0.0 * lines.half, lines.keel),
+            lines.row(side * 0.78 * lines.half, chine),
+            lines.row(side * lines.half, lines.sheer),
+        ]
         faces = loft_faces(_STATIONS, 3, closed=False)
-        skin.add(points.reshape(-1, 3), faces if side < 0 else faces[:, ::-1], HULL)
-    _stern(skin, x[0], half[0], sheer[0], chine_y[0], chine_z[0], keel[0])
-    if shape.floor_m is None:
-        _deck(skin, x, half, sheer)
-    else:
-        _inside(skin, x, half, sheer, shape.floor_m)
+        skin.add(np.stack(rows, axis=1).reshape(-1, 3), faces if side > 0 else faces[:, ::-1], HULL)
+    _stern(skin, lines)
+    first = round((1.0 - shape.decked) * (_STATIONS - 1))
+    if first < _STATIONS - 1:
+        _deck(skin, lines, first)
+    if first > 0:
+        _inside(skin, lines, shape.floor_m, first)
+    half, high, back = shape.beam_m / 2, 0.6 * shape.freeboard_m[1], -shape.length_m / 2
+    for y in (-1.0, 1.0):
+        skin.site(HULL, (0.0, y * half, high), (0.1, y, 0.0))
+    skin.site(HULL, (back, 0.35 * shape.beam_m * shape.transom, high), (-1.0, 0.0, 0.0))
+    level = shape.floor_m if first > 0 else shape.freeboard_m[1]
+    skin.site(DECK, (-0.28 * shape.length_m, 0.0, level), (0.0, 0.0, 1.0), 0.1)
 
 
 def _plan(t: np.ndarray, transom: float) -> np.ndarray:
@@ -74,37 +115,32 @@ def _plan(t: np.ndarray, transom: float) -> np.ndarray:
     return np.asarray(np.where(t < 0.42, aft, np.maximum(fore, 0.015)))
 
 
-def _stern(
-    skin: Skin, x: float, half: float, sheer: float, chine_y: float, chine_z: float, keel: float
-) -> None:
-    ring = [(0.0, keel), (chine_y, chine_z), (half, sheer), (-half, sheer), (-chine_y, chine_z)]
+def _stern(skin: Skin, lines: _Lines) -> None:
+    x, half, chine = lines.x[0], lines.half[0], 0.35 * lines.keel[0]
+    ring = [(0.0, lines.keel[0]), (0.78 * half, chine), (half, lines.sheer[0])]
+    ring += [(-half, lines.sheer[0]), (-0.78 * half, chine)]
     points = np.array([[x, y, z] for y, z in ring])
     skin.add(points, np.array([[0, 2, 1], [0, 3, 2], [0, 4, 3]]), HULL)
 
 
-def _deck(skin: Skin, x: np.ndarray, half: np.ndarray, sheer: np.ndarray) -> None:
-    """A cambered deck a hand below the edge."""
-    rows = [np.column_stack([x, -half, sheer]), np.column_stack([x, 0 * half, sheer + 0.03])]
-    rows.append(np.column_stack([x, half, sheer]))
-    faces = loft_faces(len(x), 3, closed=False)
-    skin.add(np.stack(rows, axis=1).reshape(-1, 3), faces, DECK)
+def _deck(skin: Skin, lines: _Lines, first: int) -> None:
+    """A slightly cambered deck from a station to the stem."""
+    x, half, sheer = lines.x[first:], lines.half[first:], lines.sheer[first:]
+    rows = [np.column_stack([x, y, z]) for y, z in ((-half, sheer), (0 * half, sheer + 0.03), (half, sheer))]
+    skin.add(np.stack(rows, axis=1).reshape(-1, 3), loft_faces(len(x), 3, closed=False)[:, ::-1], DECK)
 
 
-def _inside(skin: Skin, x: np.ndarray, half: np.ndarray, sheer: np.ndarray, floor: float) -> None:
-    """Gunwale, inner sides and bottom of an open boat."""
-    wall = np.minimum(0.06, 0.5 * half)
-    inner, low = half - wall, np.minimum(0.72 * half, half - wall)
-    z = np.minimum(floor + 0.35 * np.clip(x / x[-1], 0, 1) ** 3, sheer - 0.02)
-    ring = [(-half, sheer), (-inner, sheer), (-low, z), (low, z), (inner, sheer), (half, sheer)]
-    points = np.stack([np.column_stack([x, y, h]) for y, h in ring], axis=1)
-    skin.add(points.reshape(-1, 3), loft_faces(len(x), len(ring), closed=False), DECK)
-    back = np.array([[x[0] + 0.04, y[0], h[0]] for y, h in ring[1:5]])
-    skin.add(back, np.array([[0, 1, 2], [0, 2, 3]]), DECK)
-
-
-def _sites(skin: Skin, shape: HullShape) -> None:
-    half, high = shape.beam_m / 2, 0.6 * shape.freeboard_m[1]
-    for y in (-1.0, 1.0):
-        skin.site(HULL, np.array([0.0, y * (half + 0.03), high]), np.array([0.1, y, 0.0]), 0.03)
-    skin.site(HULL, np.array([-shape.length_m / 2 - 0.03, 0.0, high]), np.array([-1.0, 0.0, 0.0]))
-    skin.site(DECK, np.array([0.0, 0.0, shape.freeboard_m[1] + 0.12]), np.array([0.0, 0.0, 1.0]), 0.1)
+def _inside(skin: Skin, lines: _Lines, floor_m: float, last: int) -> None:
+    """Gunwale, inner sides, bottom and both ends of the open part, from the transom to a station."""
+    wall = np.minimum(0.06, 0.5 * lines.half)
+    inner, low = lines.half - wall, np.minimum(0.72 * lines.half, lines.half - wall)
+    rise = 0.35 * np.clip(lines.x / lines.x[-1], 0.0, 1.0) ** 3
+    z = np.minimum(floor_m + rise, lines.sheer - 0.02)
+    ring = [(-lines.half, lines.sheer), (-inner, lines.sheer), (-low, z)]
+    ring += [(-y, h) for y, h in reversed(ring)]
+    points = np.stack([lines.row(y, h) for y, h in ring], axis=1)[: last + 1]
+    skin.add(points.reshape(-1, 3), loft_faces(len(points), 6, closed=False)[:, ::-1], DECK)
+    lid = np.array([[0, 1, 2], [0, 2, 3]])
+    skin.add(points[0, 1:5] + np.array([0.04, 0.0, 0.0]), lid[:, ::-1], DECK)
+    if last < _STATIONS - 1:
+        skin.add(points[-1, 1:5], lid, DECK)

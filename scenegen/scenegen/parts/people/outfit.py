@@ -36,6 +36,6 @@ def outfits(count: int, shop: Workshop, rng: np.random.Generator) -> Int64[np.nd
     short_sleeve = ~cold & (rng.uniform(size=count) < 0.95 * warm)
     short_leg = ~cold & (rng.uniform(size=count) < 0.6 * warm)
     hair = np.full(count, palette.only("hair"))
-    shoe = np.full(count, palette.only("tyre_rubber"))
+    shoe = np.full(count, coat[2])
     sleeve, shin = np.where(short_sleeve, skin, top), np.where(short_leg, skin, bottom)
     return np.column_stack([skin, hair, top, sleeve, bottom, shin, shoe]).astype(np.int64)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from scenegen.parts.lofts import loft_faces
@@ -9,11 +11,11 @@ from scenegen.parts.skin import Skin
 from scenegen.parts.vehicles.shapes import Shape
 from scenegen.parts.vehicles.slots import BONNET, GLASS, PAINT, UNDERSIDE
 
-_HALF = 5
-"""Points of half a ring: sill, widest line, belt, edge of the roof, middle."""
-_RING = 2 * _HALF - 1
+_HALF = 4
+"""Points of half a ring: sill, widest line, belt, edge of the roof."""
+_RING = 2 * _HALF
 _ARCH_GAP_M = 0.06
-_ARCH_ANGLES = np.deg2rad([22.0, 58.0, 90.0, 122.0, 158.0])
+_ARCH_ANGLES = np.deg2rad([25.0, 65.0, 115.0, 155.0])
 
 
 def shell(skin: Skin, shape: Shape, shift_m: float = 0.0) -> None:
@@ -22,14 +24,14 @@ def shell(skin: Skin, shape: Shape, shift_m: float = 0.0) -> None:
     rings = _rings(shape, x)
     rings[..., 0] += shift_m
     _sites(skin, shape, shift_m)
-    faces = loft_faces(len(x), _RING, closed=False)
+    faces = loft_faces(len(x), _RING, closed=False)[:, ::-1]  # rings turn clockwise seen from the nose
     cell = np.arange(_RING - 1)
     half = np.minimum(cell, _RING - 2 - cell)
     middle = 0.5 * (x[1:] + x[:-1])
     slot = np.array([[_slot(shape, m, k) for k in half] for m in middle])
     skin.add(rings.reshape(-1, 3), faces, np.repeat(slot.ravel(), 2))
-    _end(skin, rings[-1], shape, front=True)
-    _end(skin, rings[0], shape, front=False)
+    _end(skin, rings[-1], front=True)
+    _end(skin, rings[0], front=False)
     _tray(skin, shape, shift_m)
 
 
@@ -61,10 +63,10 @@ def _rings(shape: Shape, x: np.ndarray) -> np.ndarray:
     taper = np.clip((np.abs(x) - half + 0.75) / 0.75, 0.0, 1.0) ** 2
     wide = shape.width_m / 2 - shape.rounding_m * taper
     edge = np.where(top > 0, wide - 0.03 - shape.tuck_m * top, wide - 0.16 * wide)
-    y = np.stack([wide - 0.03, wide, wide - 0.03, np.minimum(edge, wide - 0.04), 0.0 * x], axis=1)
-    z = np.stack([bottom, waist, belt, roof, roof + 0.03], axis=1)
+    y = np.stack([wide - 0.03, wide, wide - 0.03, np.minimum(edge, wide - 0.04)], axis=1)
+    z = np.stack([bottom, waist, belt, roof + 0.02], axis=1)
     right = np.stack([np.repeat(x[:, None], _HALF, axis=1), -y, z], axis=2)
-    left = right[:, -2::-1] * np.array([1.0, -1.0, 1.0])
+    left = right[:, ::-1] * np.array([1.0, -1.0, 1.0])
     return np.concatenate([right, left], axis=1)
 
 
@@ -94,14 +96,18 @@ def _slot(shape: Shape, x: float, band: int) -> int:
     return GLASS if foot < x < back and shape.rear_screen else PAINT
 
 
-def _end(skin: Skin, ring: np.ndarray, shape: Shape, front: bool) -> None:
-    """Close nose or tail by quads from side to side; the nose has a grille."""
-    right, left = ring[:_HALF], ring[: _HALF - 2 : -1]
-    rows = [(np.array([right[k], left[k], left[k + 1], right[k + 1]]), k) for k in range(_HALF - 1)]
-    for corners, k in rows:
-        faces = np.array([[0, 1, 2], [0, 2, 3]])
-        grille = front and k == 1
-        skin.add(corners, faces if front else faces[:, ::-1], UNDERSIDE if grille else PAINT)
+def _end(skin: Skin, ring: np.ndarray, front: bool) -> None:
+    """Close nose or tail by quads from side to side, with lamps; the nose has a grille between them."""
+    right, left = ring[:_HALF], ring[: _HALF - 1 : -1]
+    for k in range(_HALF - 1):
+        low, high = (right[k], left[k]), (right[k + 1], left[k + 1])
+        cuts = (0.0, 0.2, 0.8, 1.0) if k == 1 else (0.0, 1.0)
+        for a, b in pairwise(cuts):
+            corners = [low[0] + f * (low[1] - low[0]) for f in (a, b)]
+            corners += [high[0] + f * (high[1] - high[0]) for f in (b, a)]
+            slot = PAINT if k != 1 or (a == 0.2 and not front) else UNDERSIDE if a == 0.2 else GLASS
+            faces = np.array([[0, 1, 2], [0, 2, 3]])
+            skin.add(np.array(corners), faces if front else faces[:, ::-1], slot)
 
 
 def _tray(skin: Skin, shape: Shape, shift_m: float) -> None:
@@ -128,12 +134,18 @@ def _tray(skin: Skin, shape: Shape, shift_m: float) -> None:
         del rim
 
 
+def _widest_pane(shape: Shape) -> float:
+    """Middle of the longest side window."""
+    ends = sorted([*shape.glazed, *shape.pillars])
+    return max((b - a, 0.5 * (a + b)) for a, b in pairwise(ends))[1]
+
+
 def _sites(skin: Skin, shape: Shape, shift_m: float) -> None:
     """Where the heat of the body lives."""
     half, wide = shape.length_m / 2, shape.width_m / 2
     foot, back, front, screen = shape.cabin
     mid, rise = 0.5 * (shape.belt_m + shape.height_m), shape.height_m - shape.belt_m
-    window = 0.5 * (shape.glazed[0] + shape.glazed[1])
+    window = _widest_pane(shape)
     rows = [
         (PAINT, (0.5 * (back + front), 0.0, shape.height_m + 0.005), (0.0, 0.0, 1.0)),
         (PAINT, (half + 0.005, 0.0, 0.45 * shape.nose_m), (1.0, 0.0, 0.0)),

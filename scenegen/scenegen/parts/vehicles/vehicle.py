@@ -6,7 +6,6 @@ import numpy as np
 
 from scenegen.classes import Semantic
 from scenegen.foundation.errors import InputError, nearest
-from scenegen.geometry.part import LUMP_STANDOFF_M
 from scenegen.geometry.template import Template
 from scenegen.parts.skin import Skin
 from scenegen.parts.vehicles.shapes import BUS, CARS, TRUCK_CAB, VAN, Shape
@@ -90,12 +89,11 @@ def _truck(skin: Skin) -> None:
     skin.site(CARGO, np.array([rear, 0.0, 2.2]), np.array([-1.0, 0.0, 0.0]))
     skin.site(CARGO, np.array([front, 0.0, 3.2]), np.array([1.0, 0.0, 0.0]))
     skin.box((rear, -half, 1.1), (front, half, height), CARGO)
-    skin.box((rear + 0.1, -0.45, 0.75), (front + 0.9, 0.45, 1.1), UNDERSIDE)
+    skin.box((rear + 0.1, -0.45, 0.75), (front - 2.2, 0.45, 1.1), PAINT)
+    skin.box((front - 2.2, -0.45, 0.7), (front + 0.9, 0.45, 1.1), UNDERSIDE)
     for y in (-1.0, 1.0):
         low, high = sorted((y * 0.75, y * (half - 0.05)))
-        skin.box((front - 1.7, low, 0.55), (front - 0.5, high, 1.05), UNDERSIDE)
-    skin.box((rear + 0.05, -half + 0.1, 0.55), (rear + 0.15, half - 0.1, 0.68), UNDERSIDE)
+        skin.box((front - 1.7, low, 0.55), (front - 0.5, high, 1.05), PAINT)
+    skin.box((rear + 0.05, -half + 0.1, 0.55), (rear + 0.15, half - 0.1, 0.68), PAINT)
     wheels(skin, (length / 2 - 0.9, rear + 1.7), 0.48, half - 0.03, 0.5)
-    _exhaust(skin, np.array([front - 0.35, -half + 0.25, 0.62]), 0.06)
-    skin.site(UNDERSIDE, np.array([middle, -0.5, 0.9]), np.array([0.0, -1.0, 0.0]), LUMP_STANDOFF_M)
-    skin.site(UNDERSIDE, np.array([middle, 0.5, 0.9]), np.array([0.0, 1.0, 0.0]), LUMP_STANDOFF_M)
+    _exhaust(skin, np.array([front - 1.9, -half + 0.3, 0.62]), 0.06)

@@ -9,7 +9,7 @@ from scenegen.parts.lofts import fan_faces, loft_faces
 from scenegen.parts.skin import Skin
 from scenegen.parts.vehicles.slots import TYRE, WHEEL
 
-_RIM = 12
+_RIM = 10
 _CONTACT_M = 0.01
 """How far a loaded tyre sinks below the round."""
 
@@ -32,15 +32,8 @@ def wheels(
     """
     turn = 2 * np.pi * (np.arange(_RIM) + 0.5) / _RIM
     circle = np.column_stack([np.cos(turn), np.zeros(_RIM), np.sin(turn)])
-    rim = 0.62 * radius_m
-    # Profile from the inner sidewall over the tread to the rim: place across, radius.
-    profile = (
-        (-width_m, 0.9 * radius_m),
-        (-width_m + 0.03, radius_m),
-        (-0.03, radius_m),
-        (0.0, 0.9 * radius_m),
-        (-0.015, rim),
-    )
+    # Profile over the tread and the outer sidewall to the rim: place across, radius.
+    profile = ((-width_m, radius_m), (-0.02, radius_m), (0.0, 0.62 * radius_m))
     for side in (-1.0, 1.0):
         out = np.array([0.0, side, 0.0])
         middle = float(np.mean(axles))
@@ -51,8 +44,8 @@ def wheels(
         for side in (-1.0, 1.0):
             hub = np.array([x, side * outer_m, radius_m - _CONTACT_M])
             rings = np.array([hub + [0.0, side * y, 0.0] + r * circle for y, r in profile])
-            points, tyre = rings.reshape(-1, 3), loft_faces(5, _RIM)
+            points, tyre = rings.reshape(-1, 3), loft_faces(3, _RIM)
             disc = fan_faces(_RIM)
-            face = rings[4] - [0.0, side * 0.01, 0.0]
+            face = rings[2] - [0.0, side * 0.01, 0.0]
             skin.add(points, tyre[:, ::-1] if side > 0 else tyre, TYRE)
             skin.add(face, disc[:, ::-1] if side > 0 else disc, WHEEL)
