@@ -59,7 +59,7 @@ def _hull_faces(points: np.ndarray) -> np.ndarray:
     inward = (np.cross(b - a, c - a) * hull.equations[:, :3]).sum(axis=1) < 0
     faces = hull.simplices.astype(np.int64)
     faces[inward] = faces[inward][:, ::-1]
-    return faces
+    return np.asarray(faces)
 
 
 def _lump(points: np.ndarray, faces: np.ndarray, semantic: int) -> Template:

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
+from scipy.ndimage import gaussian_filter1d
 
 from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region, drape
@@ -17,11 +18,14 @@ from scenegen.geometry.scatter import contact_points, graded_points, hexagonal
 from scenegen.maps.coastline.layout import LIGHTHOUSE_YARD_M, Layout, far_stations
 from scenegen.maps.coastline.relief import ROAD_HALF_M
 from scenegen.maps.coastline.shape import FAR_M
+from scenegen.maps.coastline.things import Things
 from scenegen.maps.coastline.workshop import CoastWorkshop
 
-_FINE_M, _OPEN_M, _FACE_M = 2.1, 3.8, 1.0
+_FINE_M, _OPEN_M, _FACE_M = 2.1, 4.0, 1.05
+_FINE_POINTS = 30_000
+"""Points of the fine lattice, at most: where the shore is long, everything is a little coarser."""
 _CONTACT_M = 1.2
-_ROAD_END_M = 3500.0
+_ROAD_END_M = 2200.0
 _FOLD = 0.45
 """Sites rise by this share of what the highest face around them rises over their plane."""
 _COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "grass_watered")
@@ -29,8 +33,7 @@ _COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "g
 
 def build_ground(
     layout: Layout,
-    holes: Sequence[shapely.Polygon],
-    stones: np.ndarray,
+    things: Things,
     rock: str,
     sea_K: float,
     shop: CoastWorkshop,
@@ -41,10 +44,8 @@ def build_ground(
     Parameters
     ----------
     layout : Layout
-    holes : sequence of shapely.Polygon
-        Footprints of buildings: no ground below them.
-    stones : array of shapely.Polygon
-        Footprints of rocks: no sites below them, whose heat would be seen around them.
+    things : Things
+        No ground below buildings, no sites below rocks (whose heat would be seen around them), gardens.
     rock : str
         Material of this coast's rock.
     sea_K : float
@@ -54,10 +55,10 @@ def build_ground(
     """
     strips = _Strips(shop)
     regions = [*strips.land(rng), *_fields(layout, shop, rng), *strips.shore(rock, sea_K, rng)]
-    regions += _roads(layout, shop, rng)
+    regions += [*_heath(layout, shop, rng), *things.lawns, *_roads(layout, shop, rng)]
     regions += _breakwater(layout, rock, shop, rng)
-    regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in holes]
-    points = _points(strips, holes, stones, rng)
+    regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in things.holes]
+    points = _points(strips, things.holes, things.stones, rng)
     half = shop.coast.half_m
     spacing = np.array([_CONTACT_M if r.hole else _FINE_M for r in regions])
     plan = triangulate([r.outline for r in regions], points, spacing, (1.1 * half, 0.1))
@@ -109,25 +110,32 @@ class _Strips:
         """Beach, dunes and cliffs, seaward ones last."""
         coast, s, pick = self.coast, self.s, self.shop.palette.pick
         wet, beach, brow, back = (c(s) for c in (coast.wet, coast.beach, coast.brow, coast.back))
-        rocky = np.clip((coast.cliff(s) - 0.2) / 0.4, 0.0, 1.0)  # headlands taper out on the sand
+        rocky = np.clip((coast.cliff(s) - 0.06) / 0.6, 0.0, 1.0)  # headlands taper out on the sand
         core, everywhere = beach + (0.35 + 0.25 * np.sin(s / 5.3)) * (brow - beach), np.ones(len(s), bool)
         top, base = core + rocky * (brow - core), core + rocky**0.7 * (self.foot - core)
-        near = np.abs(s) < 1.45 * coast.half_m  # a thin strip far away would only cost triangles
+        near = np.abs(s) < 1.5 * coast.half_m  # a thin strip far away would only cost triangles
         middle = beach + np.clip(0.45 + 0.2 * np.sin(s / 17.0) + 0.12 * np.sin(s / 6.1), 0.2, 0.8) * (
             back - beach
         )
         sand, stone = pick("sand_dry_quartz", rng), pick(rock, rng)
         wet_sand = self.shop.palette.variants("sand_wet", 2)[0]
-        bare = brow + 1.6 + np.sin(s / 9.0) + 0.6 * np.sin(s / 3.7)
+        bend = np.arange(-1.5 * coast.half_m, 1.5 * coast.half_m, 2.0)
+        smooth = gaussian_filter1d(coast.shore(bend) + coast.brow(bend), 9.0) + 6.5 + np.sin(bend / 21.0)
+        trail = np.maximum(np.interp(s, bend, smooth) - coast.shore(s), brow + 2.5)
+        bare = brow + (rocky == 1.0) * (1.6 + np.sin(s / 9.0) + 0.6 * np.sin(s / 3.7)) + 0.05
         sandy, under = coast.cliff(s) < 0.15, np.full(len(s), -0.1 / coast.foreshore)
         # What lies below the water is never seen: it has the water's temperature, so that none of it shows at the edge.
         bed = self.shop.palette.special("sand_wet", "bed", prescribed_K=sea_K)
+        wide = np.maximum(middle, self.foot + 30.0)
         table = (
-            (self.foot, middle, everywhere, sand, Semantic.SAND),
-            (self.foot, wet, np.abs(s) < 4000.0, wet_sand, Semantic.SAND),
-            (self.foot, under, sandy, bed, Semantic.SAND),
-            (brow, bare, (rocky == 1.0) & near, pick("soil_dry", rng), Semantic.SOIL),
-            (base, top, rocky > 0.0, stone, Semantic.ROCK),
+            (self.foot, wide, ~near, sand, Semantic.SAND),
+            (self.foot, np.maximum(brow, self.foot + 25.0), ~near & (rocky > 0.5), stone, Semantic.ROCK),
+            (self.foot, middle, near, sand, Semantic.SAND),
+            (self.foot, wet, near, wet_sand, Semantic.SAND),
+            (self.foot, under, sandy & near, bed, Semantic.SAND),
+            (brow, bare, (rocky > 0.8) & near, pick("soil_dry", rng), Semantic.SOIL),
+            (base, top, (rocky > 0.0) & near, stone, Semantic.ROCK),
+            (trail, trail + 1.1, (rocky > 0.7) & near, pick("soil_dry", rng), Semantic.SOIL),
         )
         regions = []
         for low, high, where, skin, semantic in table:
@@ -188,6 +196,25 @@ def _fields(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -> li
         name = _COVERS[int(rng.integers(len(_COVERS)))]
         semantic = Semantic.SOIL if name.startswith("soil") else Semantic.GRASS
         regions.append(Region(shapes[k], shop.palette.pick(name, rng), int(semantic), fields + int(k)))
+    return regions
+
+
+def _heath(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -> list[Region]:
+    """Patches of thicker, drier or trodden growth on the open land."""
+    coast, count = shop.coast, 420
+    s = rng.uniform(-1.4, 1.4, count) * coast.half_m
+    q = coast.back(s) + 9.0 + rng.uniform(0.0, 1.0, count) ** 1.4 * 1.3 * coast.half_m
+    size = rng.uniform(1.5, 6.0, count) + rng.uniform(0.0, 1.0, count) ** 3 * 9.0
+    xy = coast.plan(s, q)
+    blobs = _blobs(xy, size, rng)
+    held = [layout.road.buffer(ROAD_HALF_M + 1.0), layout.car_park.buffer(1.0), layout.drive.buffer(2.0)]
+    keep = coast.inside(xy, 4.0) & clear_of(blobs, np.array(held, dtype=object)) & first_come(blobs)
+    owner = shop.builder.new_objects(count)
+    regions = []
+    for k in np.flatnonzero(keep):
+        name = ("grass_dry", "grass_watered", "grass_dry", "soil_dry")[int(rng.integers(4))]
+        semantic = Semantic.SOIL if name == "soil_dry" else Semantic.GRASS
+        regions.append(Region(blobs[k], shop.palette.pick(name, rng), int(semantic), owner + int(k)))
     return regions
 
 
@@ -268,19 +295,21 @@ def _points(
 ) -> np.ndarray:
     """Fine near the shore and the road, finer on faces of cliffs, coarse on open land and beyond."""
     coast = strips.coast
-    fine, face = (hexagonal(*coast.core(), spacing, rng) for spacing in (_FINE_M, _FACE_M))
-    far = graded_points(shapely.box(*coast.core()), FAR_M, _OPEN_M, rng)
 
     def zone(xy: np.ndarray) -> np.ndarray:
         sq = coast.offset(xy)
         road = coast.road(sq[:, 0]) - coast.shore(sq[:, 0]) + 26.0
-        return (sq[:, 1] > np.interp(sq[:, 0], strips.s, strips.foot)) & (sq[:, 1] < road)
+        return np.asarray((sq[:, 1] > np.interp(sq[:, 0], strips.s, strips.foot)) & (sq[:, 1] < road))
 
     def steep(xy: np.ndarray) -> np.ndarray:
         sq = coast.offset(xy)
         on_face = (sq[:, 1] > coast.beach(sq[:, 0]) - 1.0) & (sq[:, 1] < coast.brow(sq[:, 0]) + 1.0)
         return on_face & (coast.cliff_m(sq[:, 0]) > 4.0)
 
+    nominal = hexagonal(*coast.core(), 2.0 * _FINE_M, rng)
+    grain = max(float(np.sqrt(4.0 * zone(nominal).sum() / _FINE_POINTS)), 1.0)
+    fine, face = (hexagonal(*coast.core(), grain * spacing, rng) for spacing in (_FINE_M, _FACE_M))
+    far = graded_points(shapely.box(*coast.core()), FAR_M, grain * _OPEN_M, rng)
     square = np.abs(far).max(axis=1) < coast.half_m
     sq_far = coast.offset(far)
     dry = sq_far[:, 1] > np.interp(sq_far[:, 0], strips.s, strips.foot)
@@ -289,4 +318,4 @@ def _points(
     fine = fine[zone(fine) & ~steep(fine)]
     points = np.concatenate([*rows, face[steep(face)], fine, far[dry & ~(square & zone(far))]])
     hidden = shapely.STRtree(stones).query(shapely.points(points), predicate="within")[0]
-    return np.delete(points, np.unique(hidden), axis=0)
+    return np.asarray(np.delete(points, np.unique(hidden), axis=0))

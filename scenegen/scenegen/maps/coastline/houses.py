@@ -14,7 +14,8 @@ from scenegen.maps.coastline.workshop import CoastWorkshop
 
 _BELOW_M, _STEP_M = 0.8, 0.2
 _STEEPEST_M = 2.4
-_GARDEN_M = 3.0
+GARDEN_M = 4.0
+"""Width of the garden around a house [m]."""
 
 
 def draw_houses(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -> list[Building]:
@@ -31,7 +32,7 @@ def draw_houses(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -
     deep = np.where(inn, rng.uniform(10.0, 13.0, count), rng.uniform(7.5, 9.8, count))
     side = np.where(rng.uniform(size=count) < 0.25, 1.0, -1.0)
     row = np.where(rng.uniform(size=count) < 0.7, 0.0, rng.uniform(18.0, 50.0, count))
-    away = ROAD_HALF_M + rng.uniform(4.5, 9.0, count) + deep / 2 + row * (side < 0)
+    away = ROAD_HALF_M + rng.uniform(5.5, 9.0, count) + deep / 2 + row * (side < 0)
     xy, heading = along(line, mark, side * away)
     heading = heading + np.where(side > 0, np.pi, 0.0) + rng.normal(0.0, 0.05, count)
     shapes = rectangles(xy, long, deep, heading)
@@ -39,8 +40,9 @@ def draw_houses(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -
     ground = shop.relief(ring.reshape(-1, 2)).reshape(count, 5)
     level = (np.ptp(ground, axis=1) < _STEEPEST_M) & (ground.min(axis=1) > 2.0)
     good = np.flatnonzero(level & shop.coast.inside(xy, 22.0) & _dry(ring, shop))
-    free = good[shop.claims.free(shapely.buffer(shapes[good], _GARDEN_M, join_style="mitre"))]
-    chosen = free[shop.claims.take(shapely.buffer(shapes[free], _GARDEN_M, join_style="mitre"))][:wanted]
+    free = good[shop.claims.free(shapely.buffer(shapes[good], GARDEN_M, join_style="mitre"))]
+    chosen = free[shop.claims.take(shapely.buffer(shapes[free], GARDEN_M, join_style="mitre"))][:wanted]
+    inn[chosen[:1]] = True  # every village has one
     return [
         _house(ring[k, :4], float(ground[k].max()), float(ground[k].min()), bool(inn[k]), shop, rng)
         for k in chosen

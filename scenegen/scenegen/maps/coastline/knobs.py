@@ -75,7 +75,7 @@ class CoastlineKnobs(Section):
     shrubs_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 20.0))] = (2.0, 8.0)
     """Shrubs on dunes' backs and cliff tops."""
 
-    tufts_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 150.0))] = (40.0, 110.0)
+    tufts_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 400.0))] = (90.0, 240.0)
     """Tufts of marram grass on dunes."""
 
     cars: Annotated[Span, AfterValidator(_within(0.0, 80.0))] = (14.0, 36.0)
@@ -83,6 +83,12 @@ class CoastlineKnobs(Section):
 
     boats: Annotated[Span, AfterValidator(_within(0.0, 60.0))] = (8.0, 20.0)
     """Boats at anchor, at the pier and on the beach."""
+
+    traffic_per_100_m: Annotated[Span, AfterValidator(_within(0.0, 4.0))] = (0.1, 0.5)
+    """Moving vehicles on 100 m of lane."""
+
+    sailing_per_km: Annotated[Span, AfterValidator(_within(0.0, 20.0))] = (1.0, 5.0)
+    """Boats under way on a kilometre of their rounds off shore."""
 
     people: Annotated[Span, AfterValidator(_within(0.0, 250.0))] = (30.0, 90.0)
     """People on beach, pier and road."""

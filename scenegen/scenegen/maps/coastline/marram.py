@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import shapely
+from scipy.spatial import cKDTree
 
 from scenegen.classes import Semantic
 from scenegen.geometry.modelling import Modeller
@@ -12,6 +13,7 @@ from scenegen.geometry.template import Template, place
 from scenegen.maps.coastline.workshop import CoastWorkshop
 
 _SHAPES = 4
+_BESIDE_M = 0.75
 
 
 def tuft(rng: np.random.Generator, blades: int = 13) -> Template:
@@ -33,8 +35,11 @@ def tuft(rng: np.random.Generator, blades: int = 13) -> Template:
     return model.finish()
 
 
-def build_marram(shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:
-    """Tufts on dunes, thicker on their backs; all of them are one piece of vegetation."""
+def build_marram(ground: Part, shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:
+    """Tufts on dunes, thicker on their backs; all of them are one piece of vegetation.
+
+    None stands on a site of the ground: that would lie in its shade and darken metres of sand around it.
+    """
     coast = shop.coast
     rate = rng.uniform(*shop.knobs.tufts_per_1000_m2) / 1000.0
     along = np.arange(-1.4 * coast.half_m, 1.4 * coast.half_m, 2.0)
@@ -47,6 +52,8 @@ def build_marram(shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:
     xy = coast.plan(s, q)
     keep = coast.inside(xy, 1.0) & (clump > 0.6 - 2.0 * share) & shop.claims.free(shapely.points(xy), 0.35)
     xy = xy[keep]
+    beside, _ = cKDTree(ground.site_position[:, :2]).query(xy)
+    xy = xy[beside > _BESIDE_M]
     size = rng.uniform(0.45, 1.0, len(xy))
     position = np.column_stack([xy, shop.relief(xy)])
     skin, owner = shop.palette.pick("grass_dry", rng), shop.builder.new_objects()

@@ -97,7 +97,7 @@ class CoastRelief:
             near, distance = _near(xy, mound.line, reach)
             heap = mound.crown_m - mound.slope * np.maximum(distance - mound.half_m, 0.0)
             height[near] = np.maximum(height[near], heap)
-        return height
+        return np.asarray(height)
 
     def natural(self, xy: Float64[np.ndarray, "points 2"]) -> Float64[np.ndarray, "points"]:
         """Height [m] before anybody built."""
@@ -122,11 +122,8 @@ class CoastRelief:
         )
         far = np.clip((q - 450.0) / 2200.0, 0.0, 1.0) ** 1.3
         land = land + far * self.hills_m * (1.1 + self.hills(xy))
-        return np.where(
-            q < 0.0,
-            bed + self._ledges(s, q, beach, cliff, fade),
-            np.maximum(strand + land, np.minimum(strand, 0.9) - 0.4 * cliff),
-        )
+        land = np.maximum(strand + land, np.minimum(strand, 0.9) - 0.4 * cliff)
+        return np.asarray(np.where(q < 0.0, bed + self._ledges(s, q, beach, cliff, fade), land))
 
     def _face(
         self,

@@ -73,7 +73,7 @@ def _guard_rail(
     foot, _ = along(line, mark, np.full(len(mark), _RAIL_M))
     tip, _ = along(line, mark + _BAY_M, np.full(len(mark), _RAIL_M))
     middle = (foot + tip) / 2
-    down, _ = along(line, mark + _BAY_M / 2, np.full(len(mark), _RAIL_M + 30.0))
+    down, _ = along(line, mark + _BAY_M / 2, np.full(len(mark), _RAIL_M + 42.0))
     drop = shop.relief(middle) - shop.relief(down)
     low = np.array([p.bounds for p in shapely.buffer(shapely.points(middle), 2.5)])
     gaps = shapely.union_all([layout.drive.buffer(4.0), layout.path.buffer(3.0), layout.car_park.buffer(8.0)])

@@ -89,8 +89,7 @@ def build_armour(
     xy = hexagonal(x0, y0, x1, y1, 1.72 * size, rng, 0.12)
     distance = shapely.distance(shapely.points(xy), mound.line)
     xy = xy[(distance > mound.half_m + 0.62 * size) & (distance < reach)]
-    natural = shop.relief.natural(xy)
-    ground = shop.relief(xy)
+    ground, natural = shop.relief(xy), shop.unbuilt(xy)
     xy, ground = xy[ground > natural + 0.3], ground[ground > natural + 0.3]
     count = len(xy)
     name = "concrete_pavement" if cubes else rock

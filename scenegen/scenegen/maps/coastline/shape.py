@@ -154,11 +154,23 @@ def draw_coast(knobs: CoastlineKnobs, rng: np.random.Generator) -> Coast:
     ridge = np.clip(1 + 0.4 * _noise(s, 70.0, sand), 0.25, 1.7)
     dune_m = sand.uniform(*knobs.dune_height_m) * ridge * (1 - cliff) ** 1.5
     back = np.maximum(brow + 4.0, beach + sand.uniform(38.0, 62.0) * (1 - cliff))
-    road = _road(shore + np.maximum(brow + 16.0 * cliff, back) + _ROAD_BEHIND_M)
+    road = _road(shore + np.maximum(brow + 12.0 * cliff, back) + _ROAD_BEHIND_M)
     upland_m = 0.85 * gaussian_filter1d(cliff_m, _UPLAND_M / _STEP_M)
-    outline = [Curve(c) for c in (shore, cliff, wet, beach, brow, back)]
-    heights = [Curve(c) for c in (cliff_m, dune_m, upland_m, road)]
-    return Coast(frame, half, *outline, slope, *heights)
+    return Coast(
+        frame=frame,
+        half_m=half,
+        shore=Curve(shore),
+        cliff=Curve(cliff),
+        wet=Curve(wet),
+        beach=Curve(beach),
+        brow=Curve(brow),
+        back=Curve(back),
+        foreshore=slope,
+        cliff_m=Curve(cliff_m),
+        dune_m=Curve(dune_m),
+        upland_m=Curve(upland_m),
+        road=Curve(road),
+    )
 
 
 def _stations() -> np.ndarray:
@@ -176,9 +188,9 @@ def _cliffness(s: np.ndarray, half_m: float, share: float, rng: np.random.Genera
     wave = _noise(s, 330.0, rng)
     seen = wave[np.abs(s) < half_m]
     x = np.clip((wave - np.quantile(seen, 1 - share)) / 0.55 + 0.5, 0.0, 1.0)
-    return gaussian_filter1d(x * x * (3 - 2 * x), 12.0 / _STEP_M)
+    return np.asarray(gaussian_filter1d(x * x * (3 - 2 * x), 12.0 / _STEP_M))
 
 
 def _road(least: np.ndarray) -> np.ndarray:
     """A smooth line that keeps inland of another one."""
-    return gaussian_filter1d(maximum_filter1d(least, int(110.0 / _STEP_M)), 45.0 / _STEP_M)
+    return np.asarray(gaussian_filter1d(maximum_filter1d(least, int(110.0 / _STEP_M)), 45.0 / _STEP_M))

@@ -10,16 +10,17 @@ import shapely
 
 from scenegen.buildings.roof_gear import draw_roof_gear
 from scenegen.buildings.shells import build_shells
+from scenegen.geometry.ground import Region
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import rectangles
 from scenegen.maps.coastline.boats import build_boats
 from scenegen.maps.coastline.cars import build_cars
 from scenegen.maps.coastline.folk import build_folk
+from scenegen.maps.coastline.gardens import build_gardens
 from scenegen.maps.coastline.houses import draw_houses
 from scenegen.maps.coastline.huts import build_huts, draw_huts, standing_height
 from scenegen.maps.coastline.layout import LIGHTHOUSE_YARD_M, Layout
 from scenegen.maps.coastline.lighthouse import build_lighthouse
-from scenegen.maps.coastline.marram import build_marram
 from scenegen.maps.coastline.pier import HEAD_M, WIDTH_M, build_pier
 from scenegen.maps.coastline.relief import ROAD_HALF_M
 from scenegen.maps.coastline.roadside import build_roadside
@@ -30,11 +31,12 @@ from scenegen.maps.coastline.workshop import CoastWorkshop
 
 @dataclass(frozen=True, eq=False)
 class Things:
-    """Parts, the holes they leave in the ground, the stones that hide it, and what was built."""
+    """Parts, the holes they leave in the ground, the stones that hide it, gardens, and what was built."""
 
     parts: tuple[Part, ...]
     holes: tuple[shapely.Polygon, ...]
     stones: np.ndarray
+    lawns: tuple[Region, ...]
     counts: tuple[tuple[str, int], ...]
 
 
@@ -69,11 +71,10 @@ def build_things(
     rngs : sequence of numpy.random.Generator
         One for each subsystem.
     """
-    house_rng, shell_rng, hut_rng, tower_rng, pier_rng, wall_rng, rock_rng, road_rng, grass_rng, life_rng = (
-        rngs
-    )
+    house_rng, shell_rng, hut_rng, tower_rng, pier_rng, wall_rng, rock_rng, road_rng, life_rng = rngs
     car_rng, boat_rng, folk_rng = life_rng.spawn(3)
     houses = draw_houses(layout, shop, house_rng)
+    lawns, fences = build_gardens(houses, layout, shop, house_rng)
     rows = draw_huts(shop, hut_rng)
     parts = [build_lighthouse(layout, shop, tower_rng), *build_pier(layout, shop, pier_rng)]
     parts += build_armour(layout, rock, shop.builder.new_objects(), shop, wall_rng)
@@ -86,10 +87,10 @@ def build_things(
     rocks, stones = build_rocks(rock, shop, rock_rng)
     boats, boat_count = build_boats(layout, sea, shop, boat_rng)
     folk, folk_count = build_folk(layout, rows, shop, folk_rng)
-    parts += [*roadside, *cars, *rocks, *boats, *folk, *build_marram(shop, grass_rng)]
+    parts += [*fences, *roadside, *cars, *rocks, *boats, *folk]
     size = np.full(len(rows), 2.6), np.full(len(rows), 2.2)
     huts = shapely.buffer(rectangles(rows[:, :2], *size, rows[:, 2]), -0.05, join_style="mitre")
     holes = (*(b.footprint.buffer(-0.01, join_style="mitre") for b in houses), *huts)
     total = {"houses": len(houses), "huts": len(rows), "rocks": len(stones)} | counts
     total |= {"cars": car_count, "boats": boat_count, "people": folk_count}
-    return Things(tuple(parts), holes, stones, tuple(total.items()))
+    return Things(tuple(parts), holes, stones, tuple(lawns), tuple(total.items()))

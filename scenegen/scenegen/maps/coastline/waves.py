@@ -91,7 +91,8 @@ def draw_waves(
     omega = np.sqrt(edges[1:] * edges[:-1])
     amplitude = np.sqrt(2 * jonswap(omega, wind_mps, fetch_m) * np.diff(edges))
     spread = np.clip(rng.normal(0.0, 0.5, _WAVES), -1.3, 1.3) * (0.6 + 0.4 * np.minimum(omega / peak, 2.0))
-    length = np.exp(rng.uniform(*np.log(_SWELL_LENGTH_M), _SWELL_WAVES))
+    short, long = _SWELL_LENGTH_M
+    length = short * (long / short) ** rng.uniform(0.0, 1.0, _SWELL_WAVES)
     beside = rng.uniform(-0.7, 0.7) + rng.normal(0.0, 0.12, _SWELL_WAVES)
     low = np.full(_SWELL_WAVES, swell_m / 4.0 * np.sqrt(2.0 / _SWELL_WAVES))
     number = np.concatenate([omega**2 / GRAVITY_mps2, 2 * np.pi / length])

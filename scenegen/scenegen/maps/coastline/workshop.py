@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from scenegen.geometry.relief import Relief
 from scenegen.maps.coastline.claims import Claims
 from scenegen.maps.coastline.knobs import CoastlineKnobs
 from scenegen.maps.coastline.shape import Coast
@@ -18,10 +19,13 @@ class CoastWorkshop(Workshop):
     ----------
     knobs : CoastlineKnobs
     coast : Coast
+    unbuilt : callable
+        Height of the land [m] before anybody built.
     claims : Claims
         Who stands where.
     """
 
     knobs: CoastlineKnobs
     coast: Coast
+    unbuilt: Relief
     claims: Claims
