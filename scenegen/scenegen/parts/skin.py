@@ -53,6 +53,11 @@ class Skin:
         for sign in (1.0, -1.0):
             self.site(slot, position, sign * np.asarray(across, np.float64), LUMP_STANDOFF_M)
 
+    def around(self, slot: int, position: tuple[float, float, float] | np.ndarray, count: int = 3) -> None:
+        """Lumped sites around something upright and thin: three, so that the sun always finds one."""
+        for turn in 2 * np.pi * np.arange(count) / count + 0.4:
+            self.site(slot, position, (np.cos(turn), np.sin(turn), 0.0), LUMP_STANDOFF_M)
+
     def add(
         self,
         vertices: np.ndarray,

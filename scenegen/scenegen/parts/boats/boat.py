@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -35,6 +36,7 @@ def size_m(kind: str) -> tuple[float, float, float]:
     return _SHAPES[kind].length_m, _SHAPES[kind].beam_m, _HEIGHT_M[kind]
 
 
+@cache
 def boat(kind: str, running: bool = False) -> Template:
     """A boat of one kind; slots are those of `scenegen.parts.boats.slots`.
 
@@ -93,15 +95,10 @@ def _cabin(
         skin.site(GLASS, _at(x1 + 0.02, 0.0, level), _at(1.0, 0.0, 0.3))
 
 
-def _mast_sites(skin: Skin, x: float, z: float) -> None:
-    for y in (-1.0, 1.0):
-        skin.site(METAL, _at(x, y * 0.1, z), _at(0.0, y, 0.0), LUMP_STANDOFF_M)
-
-
 def _sailing(skin: Skin, running: bool) -> None:
     _cabin(skin, -1.0, 2.2, (0.95, 0.8), (0.9, 1.4), True)
     mast, foot, top = 0.7, 1.4, 12.6
-    _mast_sites(skin, mast, 5.0)
+    skin.around(METAL, (mast, 0.0, 7.0))
     skin.tube(_at(mast, 0.0, foot - 0.1), _at(mast, 0.0, top), (0.085, 0.06), METAL, 8)
     for z in (5.4, 9.2):
         skin.tube(_at(mast, -0.75, z), _at(mast, 0.75, z), (0.02, 0.02), METAL, 4)
@@ -200,7 +197,7 @@ def _fishing(skin: Skin, running: bool) -> None:
     skin.site(ENGINE, _at(-1.02, 0.0, 1.5), _at(-1.0, 0, 0))
     skin.site(EXHAUST, _at(1.0, 0.75, 3.0), _at(-1.0, 0.3, 0.2), LUMP_STANDOFF_M)
     skin.tube(_at(0.95, 0.7, 1.7), _at(0.95, 0.7, 4.3), (0.09, 0.09), EXHAUST, 8)
-    _mast_sites(skin, 0.85, 4.0)
+    skin.around(METAL, (0.8, 0.0, 4.0))
     skin.tube(_at(0.8, 0.0, 1.3), _at(0.8, 0.0, 6.2), (0.1, 0.06), METAL, 8)
     skin.tube(_at(0.8, 0.0, 2.6), _at(-3.6, 0.0, 4.4), (0.06, 0.05), METAL, 6)
     skin.tube(_at(-3.6, 0.0, 4.4), _at(0.8, 0.0, 6.1), (0.012, 0.012), METAL, 3)

@@ -5,6 +5,8 @@ All poses have the same triangles in the same order, so that a walker is one top
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 
 from scenegen.classes import Semantic
@@ -22,6 +24,7 @@ _LEAST_HEIGHT_M = 0.2
 """Of sites, above the ground: lumps start looking a standoff away."""
 
 
+@lru_cache(maxsize=256)
 def body(posture: str, phase: float = 0.0, child: bool = False) -> Template:
     """A body of 1.75 m, feet on z = 0, facing +x; scale it to size.
 

@@ -7,7 +7,7 @@ from jaxtyping import Float64
 
 from scenegen.geometry.part import Part
 from scenegen.geometry.template import place
-from scenegen.parts.vehicles.shapes import CARS
+from scenegen.parts.vehicles.fleet import Fleet
 from scenegen.parts.vehicles.skins import skins
 from scenegen.parts.vehicles.vehicle import bodies, size_m, vehicle
 from scenegen.parts.workshop import Workshop
@@ -23,6 +23,7 @@ def park(
     shop: Workshop,
     rng: np.random.Generator,
     driven: bool = False,
+    fleet: Fleet | None = None,
 ) -> list[Part]:
     """Vehicles of one kind.
 
@@ -40,29 +41,21 @@ def park(
     rng : numpy.random.Generator
     driven : bool
         Whether bonnet, tyres, rims, exhaust and underside are warm from driving.
+    fleet : Fleet, optional
+        Bodies drawn beforehand; drawn here otherwise.
     """
-    names, count = bodies(kind), len(position)
-    size_m(kind)  # refuses an unknown kind, also where there is nothing to park
+    count = len(position)
+    fleet = Fleet.draw(kind, count, rng) if fleet is None else fleet
+    assert fleet.kind == kind and len(fleet.body) == count
     if not count:
         return []
     owner = shop.builder.new_objects(count) + np.arange(count)
-    shares = [CARS[n][1] for n in names] if kind == "car" else [1.0]
-    body = rng.choice(len(names), count, p=shares)
-    scale = np.repeat(rng.uniform(0.96, 1.03, count)[:, None], 3, axis=1)
     rows = skins(kind, count, driven, shop, rng)
+    scale = np.repeat(fleet.scale[:, None], 3, axis=1)
     parts = []
-    for k, name in enumerate(names):
-        mine = np.flatnonzero(body == k)
-        if len(mine):
-            parts.append(
-                place(
-                    vehicle(name),
-                    position[mine],
-                    heading_rad[mine],
-                    scale[mine],
-                    rows[mine],
-                    owner[mine],
-                    slope[mine],
-                )
-            )
+    for k, name in enumerate(bodies(kind)):
+        of = np.flatnonzero(fleet.body == k)
+        if len(of):
+            turned = position[of], heading_rad[of], scale[of], rows[of], owner[of], slope[of]
+            parts.append(place(vehicle(name), *turned))
     return parts

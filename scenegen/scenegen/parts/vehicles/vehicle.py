@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from scenegen.classes import Semantic
@@ -25,17 +27,28 @@ def bodies(kind: str) -> tuple[str, ...]:
 
 
 def size_m(kind: str) -> tuple[float, float, float]:
-    """Length, width, height of the largest body of a kind [m]."""
-    if kind == "truck":
+    """Length, width, height [m] that hold every body of a kind.
+
+    Raises
+    ------
+    InputError
+        If there is no such kind.
+    """
+    if kind not in KINDS:
+        raise InputError(f"unknown vehicle '{kind}'{nearest(kind, KINDS)}")
+    length, width, height = np.max([body_size_m(b) for b in bodies(kind)], axis=0).tolist()
+    return length, width, height
+
+
+def body_size_m(body: str) -> tuple[float, float, float]:
+    """Length, width and height of one body [m], without mirrors."""
+    if body == "truck":
         return _TRUCK
-    shapes = [_shape(b) for b in bodies(_known(kind))]
-    return (
-        max(s.length_m for s in shapes),
-        max(s.width_m for s in shapes),
-        max(s.height_m for s in shapes),
-    )
+    shape = _shape(body)
+    return shape.length_m, shape.width_m, shape.height_m
 
 
+@cache
 def vehicle(body: str) -> Template:
     """A vehicle of one body (a key of `CARS`, "van", "bus" or "truck"); slots are those of `slots`."""
     skin = Skin(Semantic.CAR if body in CARS else Semantic.LARGE_VEHICLE)
@@ -51,12 +64,6 @@ def vehicle(body: str) -> Template:
         if body in CARS or body == "van":
             _mirrors(skin, shape)
     return skin.finish()
-
-
-def _known(kind: str) -> str:
-    if kind not in KINDS:
-        raise InputError(f"unknown vehicle '{kind}'{nearest(kind, KINDS)}")
-    return kind
 
 
 def _shape(body: str) -> Shape:
