@@ -1,4 +1,7 @@
-"""Which movers appear in a clip: chosen once by its whole path, so that nothing ever pops up or vanishes."""
+"""Which movers appear in a clip, and where in an image they can be.
+
+The first is chosen once by the clip's whole path, so that nothing ever pops up or vanishes.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +18,10 @@ MAX_TRIANGLES = 10_000
 """Of all movers of a clip: their acceleration structure is rebuilt for every frame, 0.4 ms of CPU a thousand."""
 _SMALLEST_PX = 0.7
 """Movers that never look larger than that are left out."""
-_SURE_OF = 1.05
-"""Allowance on the size of a mover: limbs that swing."""
+_NEAR_M = 0.1
+"""Boxes that reach closer to the camera's plane are everywhere in the image."""
+_MARGIN_PX = 1.5
+"""Around a box: sub-samples lie half a pixel off the centre, and rounding must never cost a ray."""
 
 
 def choose(
@@ -45,10 +50,11 @@ def choose(
     """
     if not len(movers):
         return ()
-    radius = np.array([_SURE_OF * 0.5 * np.linalg.norm(m.size_m) for m in movers])
-    up = 0.5 * np.array([m.size_m[2] for m in movers])
-    middle = Company.of(movers).places(times_s)[..., :3]
-    middle[..., 2] += up
+    company = Company.of(movers)
+    middle = company.places(times_s)[..., :3]
+    middle[..., 2] += company.box[:, :, 2].mean(axis=1)
+    # Boxes need not be centred on the origin, and they pitch and roll: a little more than half the diagonal.
+    radius = 0.55 * np.linalg.norm(np.ptp(company.box, axis=1), axis=1) + 0.2
     relative = np.einsum("pni,pij->pnj", middle - poses[:, None, :3, 3], poses[:, :3, :3])
     distance = np.linalg.norm(relative, axis=-1)
     large = camera.focal_px * 2.0 * radius > _SMALLEST_PX * distance
@@ -58,6 +64,34 @@ def choose(
     triangles = np.cumsum([len(movers[k].body.faces) for k in order])
     kept = order[np.isfinite(nearest[order]) & (triangles <= max_triangles)]
     return tuple(sorted(kept.tolist()))
+
+
+def around(
+    company: Company, time_s: float, camera: Camera, pose: Float64[np.ndarray, "4 4"]
+) -> Bool[np.ndarray, "rows columns"]:
+    """Pixels whose rays can meet a mover at one time: rectangles around the projections of their boxes."""
+    near = np.zeros((camera.height_px, camera.width_px), bool)
+    if not company.movers:
+        return near
+    corner = np.stack([company.box[:, pick, range(3)] for pick in _CORNERS], axis=1)
+    move = company.poses(time_s)
+    world = np.einsum("nij,nkj->nki", move[:, :3, :3], corner) + move[:, None, :3, 3]
+    x, y, z = np.moveaxis((world - pose[:3, 3]) @ pose[:3, :3], -1, 0)
+    ahead = z.max(axis=1) > 0.0
+    whole = ahead & (z.min(axis=1) < _NEAR_M)
+    depth = np.maximum(z, _NEAR_M)
+    size = np.array([camera.width_px, camera.height_px])
+    place = np.stack([x, y], axis=-1) / depth[..., None] * camera.focal_px + camera.centre_px
+    low = np.where(whole[:, None], 0.0, place.min(axis=1) - _MARGIN_PX)
+    high = np.where(whole[:, None], size, place.max(axis=1) + _MARGIN_PX)
+    first = np.clip(np.floor(low), 0, size).astype(np.int64)
+    last = np.clip(np.ceil(high), 0, size).astype(np.int64)
+    for (left, top), (right, bottom) in zip(first[ahead].tolist(), last[ahead].tolist(), strict=True):
+        near[top:bottom, left:right] = True
+    return near
+
+
+_CORNERS = np.array([[k >> 2 & 1, k >> 1 & 1, k & 1] for k in range(8)])
 
 
 def _in_view(

@@ -12,7 +12,7 @@ from scenegen_render.camera import Camera
 from scenegen_render.trace.lit import Lit
 from scenegen_render.trace.pose import DevicePose, Pose, device_pose
 from scenegen_render.trace.surface import moving_corners
-from scenegen_render.trace.troupe import Instant
+from scenegen_render.trace.troupe import Instant, View
 
 _OCCLUSION_TOLERANCE = 1e-3
 _IN_FRONT = 1e-6
@@ -59,11 +59,20 @@ def footing(lit: Lit, now: Instant, face: Any, valid: Any) -> Footing:
     mi, dr = backend.modules()
     moving = valid & (face >= lit.first_moving)
     own = dr.select(moving, face - lit.first_moving, 0)
-    standing = valid & ~moving
-    index = [dr.gather(mi.UInt, lit.loaded.faces, face * 3 + k, standing) for k in range(3)]
-    still = [dr.gather(mi.Vector3f, lit.loaded.vertices, k, standing) for k in index]
-    drawn = moving_corners(lit, now, own, moving)
-    a, b, c = (mi.Vector3d(dr.select(moving, m, s)) for m, s in zip(drawn, still, strict=True))
+
+    def standing(own: Any, face: Any, valid: Any) -> tuple[Any, Any, Any]:
+        index = (dr.gather(mi.UInt, lit.loaded.faces, face * 3 + k, valid) for k in range(3))
+        a, b, c = (dr.gather(mi.Vector3f, lit.loaded.vertices, k, valid) for k in index)
+        return a, b, c
+
+    corners = dr.if_stmt(
+        args=(own, face, valid),
+        cond=moving,
+        true_fn=lambda own, face, valid: moving_corners(lit, now, own),
+        false_fn=standing,
+        label="corners",
+    )
+    a, b, c = (mi.Vector3d(corner) for corner in corners)
     return Footing(a, b - a, c - a, moving, own)
 
 
@@ -128,7 +137,7 @@ def planar_depth(pose: DevicePose, x: Any, y: Any, corner: Any, normal: Any) -> 
 
 def moved(
     lit: Lit,
-    then: Instant,
+    then: View,
     camera: Camera,
     plane: Any,
     depth: Any,
@@ -141,8 +150,8 @@ def moved(
 
     Parameters
     ----------
-    then : Instant
-        Where the movers are in the other frame.
+    then : View
+        Of the movers in the other frame.
     plane : mitsuba.Vector2f
         Camera-frame direction of each pixel centre at z = 1.
     depth : mitsuba.Float
@@ -170,11 +179,26 @@ def moved(
     shift = mi.Vector2f(u - plane.x * camera.focal_px, v - plane.y * camera.focal_px)
     flow = dr.select(front, shift, dr.nan)
     back = other.turn(place.x, place.y, place.z)  # from the other camera towards the point, per unit depth
-    ray = mi.Ray3f(other.translation, back)
-    ray.maxt = dr.select(valid, depth * (1.0 - _OCCLUSION_TOLERANCE), dr.largest(mi.Float))
+    reach = dr.select(valid, depth * (1.0 - _OCCLUSION_TOLERANCE), dr.largest(mi.Float))
+    ray = _as_far_as(other.translation, back, reach)
     hidden = lit.loaded.scene.ray_test(ray, coherent=True, active=inside)
-    hidden |= then.scene.ray_test(ray, coherent=True, active=inside & ~hidden)
+    column, row = mi.UInt(dr.select(inside, u + cx, 0.0)), mi.UInt(dr.select(inside, v + cy, 0.0))
+    near = dr.gather(mi.UInt, then.near, row * camera.width_px + column, inside) > 0
+    hidden |= dr.if_stmt(
+        args=(ray.o, ray.d, ray.maxt),
+        cond=inside & ~hidden & near,
+        true_fn=lambda o, d, maxt: then.instant.scene.ray_test(_as_far_as(o, d, maxt), coherent=True),
+        false_fn=lambda o, d, maxt: mi.Bool(False),
+        label="hidden",
+    )
     return Moved(flow, inside & ~hidden)
+
+
+def _as_far_as(origin: Any, direction: Any, maxt: Any) -> Any:
+    mi, _ = backend.modules()
+    ray = mi.Ray3f(origin, direction)
+    ray.maxt = maxt
+    return ray
 
 
 def camera_normal(pose: Pose, plane: Any, normal: Any, valid: Any) -> Any:

@@ -56,7 +56,7 @@ def incoming(lit: Lit, now: Instant, pose: DevicePose, towards: Any, face: Any, 
     normal = dr.mulsign(normal, facing)
     outgoing = dr.fma(normal, 2.0 * dr.abs(facing), unit)
     start = dr.fma(normal, _LIFT, dr.fma(towards, depth, pose.translation))
-    met = surface.cast(lit, now, start, outgoing, coherent=True)
+    met = surface.cast(lit, now, start, outgoing, lit.troupe.present)
     there = surface.skin(lit, met)
     leaving = surface.radiance(lit, there, there.temperature_K, 0.0)
     return dr.select(met.valid, lit.air.through(leaving, met.depth), lit.air.sky_towards(outgoing))

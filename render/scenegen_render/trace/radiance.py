@@ -18,7 +18,7 @@ from scenegen_render.camera import Camera
 from scenegen_render.trace import mirror, pixels, surface
 from scenegen_render.trace.lit import Lit
 from scenegen_render.trace.pose import DevicePose
-from scenegen_render.trace.troupe import Instant
+from scenegen_render.trace.troupe import Instant, View
 
 _LARGEST_GROUP = 4
 
@@ -72,18 +72,19 @@ class Sampler:
         self._corner = pixels.on_device(pixels.image_plane(camera, np.zeros((self.groups, 2))))
         self._offset = backend.upload(np.asarray(pattern / camera.focal_px, np.float32))
         lanes = np.arange(self.groups * camera.width_px * camera.height_px, dtype=np.uint32)
+        self._tiled = backend.upload(pixels.tiled(camera))
         self._in_pixel = backend.upload(lanes % np.uint32(self.groups))
 
-    def cast(self, lit: Lit, now: Instant, pose: DevicePose) -> Samples:
+    def cast(self, lit: Lit, view: View, pose: DevicePose) -> Samples:
         """Send every sub-sample and shade what it meets."""
         mi, dr = backend.modules()
         towards = pose.turn(self._plane.x, self._plane.y, mi.Float(1.0))
-        hit = surface.cast(lit, now, pose.translation, towards, coherent=True)
+        near = dr.gather(mi.UInt, view.near, self._pixel_of(dr.arange(mi.UInt, dr.width(towards)))) > 0
+        hit = surface.cast(lit, view.instant, pose.translation, towards, near)
         on = surface.skin(lit, hit)
-        rest, normal = surface.at_rest(lit, now, hit, on)
         length = dr.norm(towards)
-        cosine = surface.cosine(normal, towards / length)
-        temperature = surface.textured_K(lit, rest, on, hit.depth * self._metre_per_depth / cosine)
+        cosine = surface.cosine(on, towards / length)
+        temperature = surface.textured_K(lit, hit, on, hit.depth * self._metre_per_depth / cosine)
         rho = mirror.reflectance(lit, hit, on, cosine)
         tau = lit.air.transmission(hit.depth * length)
         leaving = surface.radiance(lit, on, temperature, rho)
@@ -125,6 +126,11 @@ class Sampler:
         """Mean over the groups of each pixel, of the evaluated result of `merge`."""
         _, dr = backend.modules()
         return groups if self.groups == 1 else dr.block_sum(groups, self.groups) * (1.0 / self.groups)
+
+    def _pixel_of(self, sample: Any) -> Any:
+        """Row-major index of the pixel of a sub-sample."""
+        mi, dr = backend.modules()
+        return dr.gather(mi.UInt, self._tiled, sample // self.count)
 
     def _members(self, values: Any, lane: Any) -> list[Any]:
         """Values of the sub-samples of each group."""

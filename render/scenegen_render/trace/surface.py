@@ -25,21 +25,24 @@ class Hit:
     valid : mitsuba.Bool
     depth : mitsuba.Float
         Distance in units of the ray's direction.
-    point : mitsuba.Vector3f
-        World position [m].
+    rest : mitsuba.Vector3f
+        Position in the rest pose [m]: for the world, where it is. A mover's texture is fixed to its body.
     face : mitsuba.UInt
         Of the world, and from `Lit.first_moving` on of the movers.
     uv : mitsuba.Point2f
     moving : mitsuba.Bool
         A mover was met.
+    normal : mitsuba.Vector3f
+        Outward normal of what moves; zero elsewhere.
     """
 
     valid: Any
     depth: Any
-    point: Any
+    rest: Any
     face: Any
     uv: Any
     moving: Any
+    normal: Any
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,23 +71,46 @@ class Skin:
     mirror: Any
 
 
-def cast(lit: Lit, now: Instant, origin: Any, direction: Any, coherent: bool) -> Hit:
-    """Trace rays against the world, then as far as they came against the movers of an instant."""
+def cast(lit: Lit, now: Instant, origin: Any, direction: Any, near: Any) -> Hit:
+    """Trace rays against the world, then as far as they came against the movers of an instant.
+
+    Parameters
+    ----------
+    near : mitsuba.Bool
+        Rays that can meet a mover; the others do not try.
+    """
     mi, dr = backend.modules()
-    ray = mi.Ray3f(origin, direction)
-    world = lit.loaded.scene.ray_intersect_preliminary(ray, coherent=coherent)
-    ray.maxt = world.t
-    mover = now.scene.ray_intersect_preliminary(ray, coherent=coherent)
-    moving = mover.is_valid()
-    t = dr.select(moving, mover.t, world.t)
-    return Hit(
-        valid=moving | world.is_valid(),
-        depth=t,
-        point=dr.fma(direction, t, origin),
-        face=dr.select(moving, mover.prim_index + lit.first_moving, world.prim_index),
-        uv=dr.select(moving, mover.prim_uv, world.prim_uv),
-        moving=moving,
+    world = lit.loaded.scene.ray_intersect_preliminary(mi.Ray3f(origin, direction), coherent=True)
+
+    def among_movers(origin: Any, direction: Any, t: Any, face: Any, u: Any, v: Any) -> tuple[Any, ...]:
+        ray = mi.Ray3f(origin, direction)
+        ray.maxt = t
+        mover = now.scene.ray_intersect_preliminary(ray, coherent=True)
+        met, own, uv = mover.is_valid(), mover.prim_index, mover.prim_uv
+        t, face = dr.select(met, mover.t, t), dr.select(met, own + lit.first_moving, face)
+        u, v = dr.select(met, uv.x, u), dr.select(met, uv.y, v)
+        rest = dr.select(met, _at_rest(lit, own, uv, met), dr.fma(direction, t, origin))
+        return t, face, u, v, rest, met, dr.select(met, moving_normal(lit, now, own, met), 0.0)
+
+    def alone(origin: Any, direction: Any, t: Any, face: Any, u: Any, v: Any) -> tuple[Any, ...]:
+        return t, face, u, v, dr.fma(direction, t, origin), mi.Bool(False), mi.Vector3f(0.0)
+
+    t, face, u, v, rest, moving, normal = dr.if_stmt(
+        args=(origin, direction, world.t, world.prim_index, world.prim_uv.x, world.prim_uv.y),
+        cond=near & (world.t >= 0.0),  # always true, but as wide as the rays: `near` may be one for all
+        true_fn=among_movers,
+        false_fn=alone,
+        label="movers",
     )
+    return Hit(moving | world.is_valid(), t, rest, face, mi.Point2f(u, v), moving, normal)
+
+
+def _at_rest(lit: Lit, own: Any, uv: Any, active: Any) -> Any:
+    """Positions on movers in their rest pose."""
+    mi, dr = backend.modules()
+    rest = (dr.gather(mi.Vector4f, lit.troupe.rest, own * 3 + k, active) for k in range(3))
+    a, b, c = (mi.Vector3f(corner.x, corner.y, corner.z) for corner in rest)
+    return dr.fma(b - a, uv.x, dr.fma(c - a, uv.y, a))
 
 
 def skin(lit: Lit, hit: Hit) -> Skin:
@@ -99,7 +125,7 @@ def skin(lit: Lit, hit: Hit) -> Skin:
         temperature_K=dr.fma(u, warm.y - warm.x, dr.fma(v, warm.z - warm.x, warm.x)),
         irradiance=dr.fma(u, shone.y - shone.x, dr.fma(v, shone.z - shone.x, shone.x)),
         what=what,
-        normal=unpack_normal(dr.reinterpret_array(mi.UInt, shone.w)),  # of a mover: see `at_rest`
+        normal=dr.select(hit.moving, hit.normal, unpack_normal(dr.reinterpret_array(mi.UInt, shone.w))),
         emissivity=own.x,
         texture_K=own.y,
         texture_frequency=own.z,
@@ -107,43 +133,17 @@ def skin(lit: Lit, hit: Hit) -> Skin:
     )
 
 
-def at_rest(lit: Lit, now: Instant, hit: Hit, on: Skin) -> tuple[Any, Any]:
-    """Where a hit lies in the rest pose, which for the world is where it is, and its normal as it is now.
-
-    A mover's texture is fixed to its body: in the world it would swim over it.
-    """
-    mi, dr = backend.modules()
-
-    def on_mover(face: Any, u: Any, v: Any, point: Any, normal: Any) -> tuple[Any, Any]:
-        own = face - lit.first_moving
-        rest = (dr.gather(mi.Vector4f, lit.troupe.rest, own * 3 + k) for k in range(3))
-        a, b, c = (mi.Vector3f(corner.x, corner.y, corner.z) for corner in rest)
-        place = dr.fma(b - a, u, dr.fma(c - a, v, a))
-        return place, moving_normal(lit, now, own)
-
-    place, normal = dr.if_stmt(
-        args=(hit.face, hit.uv.x, hit.uv.y, hit.point, on.normal),
-        cond=hit.moving,
-        true_fn=on_mover,
-        false_fn=lambda face, u, v, point, normal: (point, normal),
-        label="mover",
-    )
-    return place, normal
-
-
-def textured_K(lit: Lit, rest: Any, on: Skin, footprint_m: Any) -> Any:
+def textured_K(lit: Lit, hit: Hit, on: Skin, footprint_m: Any) -> Any:
     """Kinetic temperature with the surface's small-scale variation, fixed to its rest position.
 
     Parameters
     ----------
-    rest : mitsuba.Vector3f
-        Position in the rest pose [m].
     footprint_m : mitsuba.Float
         Longest extent of the pixel on the surface. An octave vanishes between one and two lattice spacings, where it
         could only alias.
     """
     mi, dr = backend.modules()
-    place = noise.tilted(rest) * on.texture_frequency
+    place = noise.tilted(hit.rest) * on.texture_frequency
     size = footprint_m * on.texture_frequency
     total = mi.Float(0.0)
     for k, (frequency, amplitude) in enumerate(_OCTAVES):
@@ -166,10 +166,10 @@ def radiance(lit: Lit, on: Skin, temperature_K: Any, mirror_reflectance: Any) ->
     return dr.fma(emissivity, lit.air.blackbody(temperature_K), reflected)
 
 
-def cosine(normal: Any, unit: Any) -> Any:
+def cosine(on: Skin, unit: Any) -> Any:
     """Cosine between a unit ray direction and the surface normal, either side; not below 0.01."""
     _, dr = backend.modules()
-    return dr.maximum(dr.abs(dr.dot(normal, unit)), 0.01)
+    return dr.maximum(dr.abs(dr.dot(on.normal, unit)), 0.01)
 
 
 def what(lit: Lit, face: Any, valid: Any) -> Any:
@@ -187,10 +187,10 @@ def face_normal(lit: Lit, now: Instant, face: Any) -> Any:
     return dr.select(moving, own, unpack_normal(packed))
 
 
-def moving_normal(lit: Lit, now: Instant, own: Any) -> Any:
+def moving_normal(lit: Lit, now: Instant, own: Any, active: Any = True) -> Any:
     """Outward normal of movers' faces, counted from the troupe's first."""
     _, dr = backend.modules()
-    a, b, c = moving_corners(lit, now, own)
+    a, b, c = moving_corners(lit, now, own, active)
     return dr.normalize(dr.cross(b - a, c - a))
 
 

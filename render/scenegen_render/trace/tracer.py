@@ -20,7 +20,7 @@ from scenegen_render.trace.casting import choose
 from scenegen_render.trace.lit import Lit, light
 from scenegen_render.trace.pose import Pose, device_pose, relative
 from scenegen_render.trace.radiance import Sampler, Samples
-from scenegen_render.trace.troupe import Instant
+from scenegen_render.trace.troupe import Instant, View
 
 
 class Tracer:
@@ -90,13 +90,14 @@ class Tracer:
         """
         _, dr = backend.modules()
         towards = device_pose(pose)
-        now = lit.troupe.at(times_s[0])
-        others = [(next_pose, lit.troupe.at(times_s[1]))]
+        view = lit.troupe.seen(times_s[0], self.camera, pose)
+        now = view.instant
+        others = [(next_pose, lit.troupe.seen(times_s[1], self.camera, next_pose))]
         if self.knobs.backward_flow:
             if previous_pose is None:
                 raise ValueError("backward flow needs the previous pose")
-            others.append((previous_pose, lit.troupe.at(times_s[2])))
-        samples = self._sampler.cast(lit, now, towards)
+            others.append((previous_pose, lit.troupe.seen(times_s[2], self.camera, previous_pose)))
+        samples = self._sampler.cast(lit, view, towards)
         dr.eval(samples)
         layers = self._labels(lit, now, pose, samples, others)
         radiance = self._sampler.merge(lit, now, towards, samples)
@@ -115,7 +116,7 @@ class Tracer:
         return image
 
     def _labels(
-        self, lit: Lit, now: Instant, pose: Pose, samples: Samples, others: list[tuple[Pose, Instant]]
+        self, lit: Lit, now: Instant, pose: Pose, samples: Samples, others: list[tuple[Pose, View]]
     ) -> dict[str, Any]:
         """Layers of the ray through each pixel centre, which is the first sub-sample."""
         mi, dr = backend.modules()
@@ -142,7 +143,7 @@ class Tracer:
                 self._centres,
                 depth,
                 valid,
-                labels.shift(lit, now, then, on, exact, x, y, depth),
+                labels.shift(lit, now, then.instant, on, exact, x, y, depth),
                 device_pose(relative(other, pose)),
                 device_pose(other),
             )

@@ -16,6 +16,9 @@ from jaxtyping import Float32, UInt32
 
 from scenegen.movers.company import Company
 from scenegen_render import backend
+from scenegen_render.camera import Camera
+from scenegen_render.trace.casting import around
+from scenegen_render.trace.pose import Pose
 
 _UNSEEN = 2
 """Faces nobody sees; two, since tables of one row are compiled differently."""
@@ -30,13 +33,30 @@ class Instant:
 
     Attributes
     ----------
+    time_s : float
     scene : mitsuba.Scene
     vertices : mitsuba.Float, 3 per vertex
         World positions [m].
     """
 
+    time_s: float
     scene: Any
     vertices: Any
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """Movers at one time, and where in one image they can be.
+
+    Attributes
+    ----------
+    instant : Instant
+    near : mitsuba.UInt, 1 per pixel
+        Row by row: 1 where a ray of the pixel can meet a mover, mostly 0. Only there is their scene traced.
+    """
+
+    instant: Instant
+    near: Any
 
 
 class Troupe:
@@ -51,16 +71,20 @@ class Troupe:
     company : Company
     faces : mitsuba.UInt, 3 per face
         Indices into the vertices of an instant.
+    present : mitsuba.Bool
+        Whether there is any mover: an argument of kernels, not a part of them.
     rest : mitsuba.Float, 12 per face
         Corners in the rest pose [m], four floats each; shifted by a vector of the mover's own, so that no two movers
         share a pattern of texture.
     """
 
     def __init__(self, company: Company) -> None:
+        mi, dr = backend.modules()
         self.company = company
         unseen = np.arange(3 * _UNSEEN).reshape(-1, 3)
         faces = np.concatenate([unseen, company.body.faces + 3 * _UNSEEN]).astype(np.uint32)
         self.faces = backend.upload(faces)
+        self.present = dr.opaque(mi.Bool, bool(company.movers))
         self.rest = backend.upload(_rest_corners(company))
         self._stages: list[_Stage] = []
 
@@ -77,6 +101,11 @@ class Troupe:
             stage.move(vertices, time_s)
         self._stages.append(stage)  # the last used last: the first may be overwritten
         return stage.instant
+
+    def seen(self, time_s: float, camera: Camera, pose: Pose) -> View:
+        """The movers at one time, as a camera may see them."""
+        near = around(self.company, time_s, camera, pose)
+        return View(self.at(time_s), backend.upload(near.astype(np.uint32)))
 
 
 class _Stage:
@@ -99,7 +128,7 @@ class _Stage:
         on_device = backend.upload(vertices)
         self._parameters["movers.vertex_positions"] = on_device
         self._parameters.update()
-        self.time_s, self.instant = time_s, Instant(self._scene, on_device)
+        self.time_s, self.instant = time_s, Instant(time_s, self._scene, on_device)
 
 
 def face_record(company: Company, first_site: int) -> UInt32[np.ndarray, "faces 4"]:

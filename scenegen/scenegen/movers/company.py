@@ -40,6 +40,8 @@ class Company:
         Mover of each vertex and of each thermal site.
     site_surface : int64 (sites,)
         Palette index.
+    box : float64 (movers, 2, 3)
+        Lower and upper corner of each body in its own frame, all phases of its gait included [m].
     timetable : Timetable
     walkers : Walkers
     walking : int64 (gaits,)
@@ -51,6 +53,7 @@ class Company:
     owner: Int64[np.ndarray, "vertices"]
     site_owner: Int64[np.ndarray, "sites"]
     site_surface: Int64[np.ndarray, "sites"]
+    box: Float64[np.ndarray, "movers 2 3"]
     timetable: Timetable
     walkers: Walkers
     walking: Int64[np.ndarray, "gaits"]
@@ -70,6 +73,7 @@ class Company:
             owner=np.repeat(np.arange(len(movers)), counts),
             site_owner=np.repeat(np.arange(len(movers)), [len(m.body.site_position) for m in movers]),
             site_surface=surface,
+            box=np.array([m.box_m for m in movers]).reshape(-1, 2, 3),
             timetable=Timetable.of([m.route for m in movers]),
             walkers=Walkers.of(
                 [m.gait for m in movers if m.gait is not None], [int(first[k]) for k in walking]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Float64
 
 from scenegen.geometry.part import Part
 from scenegen.movers.gait import Gait
@@ -37,6 +38,12 @@ class Mover:
     def object(self) -> int:
         """Instance id."""
         return int(self.body.object[0])
+
+    @property
+    def box_m(self) -> Float64[np.ndarray, "2 3"]:
+        """Lower and upper corner of the body in its own frame, in every phase of its gait [m]."""
+        points = self.body.vertices if self.gait is None else self.gait.cycle.reshape(-1, 3)
+        return np.stack([points.min(axis=0), points.max(axis=0)]).astype(np.float64)
 
     @property
     def size_m(self) -> tuple[float, float, float]:
