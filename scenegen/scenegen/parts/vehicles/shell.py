@@ -28,7 +28,7 @@ def shell(skin: Skin, shape: Shape, shift_m: float = 0.0) -> None:
     cell = np.arange(_RING - 1)
     half = np.minimum(cell, _RING - 2 - cell)
     middle = 0.5 * (x[1:] + x[:-1])
-    slot = np.array([[_slot(shape, m, k) for k in half] for m in middle])
+    slot = np.array([[_slot(shape, m, k) for k in half.tolist()] for m in middle.tolist()])
     skin.add(rings.reshape(-1, 3), faces, np.repeat(slot.ravel(), 2))
     _end(skin, rings[-1], front=True)
     _end(skin, rings[0], front=False)
