@@ -91,8 +91,8 @@ class Country:
     """
 
     parcels: tuple[Parcel, ...]
-    boundaries: tuple[Float64[np.ndarray, "points 2"], ...]
-    road: Float64[np.ndarray, "points 2"]
+    boundaries: tuple[Float64[np.ndarray, "_ 2"], ...]
+    road: Float64[np.ndarray, "stations 2"]
     drive: shapely.Polygon
     farm: Farm
     pond: Plot | None

@@ -115,7 +115,7 @@ class Grounds:
     car_park: Plot
     forecourt: shapely.Polygon
     access: Float64[np.ndarray, "2 2"]
-    paths: tuple[Float64[np.ndarray, "points 2"], ...]
+    paths: tuple[Float64[np.ndarray, "_ 2"], ...]
     platforms: tuple[Plot, ...]
     outline: shapely.Polygon
     road_y_m: float
