@@ -1,0 +1,178 @@
+"""Recursive branching inside a crown outline: trunk, limbs, branches, twigs, and leaf cards on branches and twigs.
+
+The parameters are those of Weber and Penn 1995, "Creation and rendering of realistic trees" (SIGGRAPH, doi:
+10.1145/218380.218427): how many children of each order, their angles, lengths and curvature; lengths end at the
+outline, so that the species' silhouette comes out whatever the branches do.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from scenegen.parts.vegetation.branches import GOLDEN_RAD, Branches, aside, sprout, unit
+from scenegen.parts.vegetation.cards import cards
+from scenegen.parts.vegetation.growth import NOTHING, Grown, Plan, merged
+from scenegen.parts.vegetation.outline import pull_inside, room, side_area
+from scenegen.parts.vegetation.species import Broadleaf
+from scenegen.parts.vegetation.tubes import Mesh, tubes
+
+_FULL_FACES = 2400
+"""Triangles for which the numbers of limbs, branches and twigs of a species are meant."""
+_FOOT = -0.03
+_HIDDEN_SHARE, _HIDDEN_AREA = 0.22, 2.6
+"""Share of the cards that fill the inside of a crown, and their area against the others: nobody sees their edges."""
+_TWIG_RADIUS = (0.0016, 0.0006)
+
+
+def grow(species: Broadleaf, plan: Plan, rng: np.random.Generator) -> Grown:
+    """Grow one tree of about unit height."""
+    wood = _richness(species, plan)
+    trunk = _trunk(species, rng)
+    limbs = _limbs(species, trunk, wood[0], rng)
+    branches = _branches(species, limbs, wood[1], rng)
+    twigs = _twigs(species, branches, wood[2], rng)
+    bare = plan.in_leaf < 0.75
+    small = plan.faces < 900
+    pieces = [tubes(limbs, 3 if small else 4, True), tubes(_coarse(branches, bare), 3, True)]
+    if bare:
+        pieces.append(tubes(twigs, 3, True))
+    body, boughs = tubes(trunk, 5 if small else 7, False), merged(pieces)
+    left = plan.faces - len(body[1]) - len(boughs[1]) * (not bare)
+    leaves = NOTHING
+    if plan.in_leaf > 0.0:
+        leaves = _foliage(species, limbs, branches, twigs, max(left, 240) // 2, plan.in_leaf, rng)
+    return Grown(body, boughs, leaves)
+
+
+def _richness(species: Broadleaf, plan: Plan) -> tuple[int, int, int]:
+    """Limbs of the tree, branches of a limb, twigs of a branch."""
+    w, q = species.wood, (plan.faces / _FULL_FACES) ** (1.0 / 3.0)
+    return max(5, round(w.limbs * q)), max(3, round(w.branches * q)), max(2, round(w.twigs * q))
+
+
+def _trunk(species: Broadleaf, rng: np.random.Generator) -> Branches:
+    w = species.wood
+    lean = rng.normal(0.0, 0.03 + 0.1 * w.crooked, (w.stems, 3))
+    if w.stems > 1:
+        around = 2 * np.pi * np.arange(w.stems) / w.stems + rng.uniform(0, 2 * np.pi)
+        spread = np.column_stack([np.cos(around), np.sin(around), np.zeros(w.stems)])
+        lean += 0.42 * spread
+        start = 0.8 * w.girth * spread + np.array([0.0, 0.0, _FOOT])
+    else:
+        start = np.array([[0.0, 0.0, _FOOT]])
+    lean[:, 2] = 1.0
+    reach = np.full(w.stems, w.leader - _FOOT)
+    thick = np.full(w.stems, w.girth / np.sqrt(w.stems))
+    tip = thick * (0.12 if w.leader > 0.75 else 0.4)
+    trunk = sprout(start, unit(lean), reach, (thick, tip), 8, 0.35, 0.25 * w.crooked, rng)
+    flare = 1.0 + 0.45 * np.exp(-np.maximum(trunk.points[..., 2], 0.0) / 0.025)
+    return Branches(trunk.points, trunk.radius * flare)
+
+
+def _limbs(species: Broadleaf, trunk: Branches, count: int, rng: np.random.Generator) -> Branches:
+    w, outline = species.wood, species.outline
+    k = np.arange(count)
+    rank = (k + rng.uniform(0.2, 0.8, count)) / count
+    lowest = max(outline.base * 0.82, 0.02)
+    height = lowest + (w.leader - lowest) * rank**0.85
+    stem = k % w.stems
+    start, along, thick = trunk.at(stem, (height - _FOOT) / (w.leader - _FOOT))
+    tilt = np.deg2rad(w.limb_angle_deg[0] + (w.limb_angle_deg[1] - w.limb_angle_deg[0]) * rank)
+    tilt *= rng.uniform(0.85, 1.15, count)
+    turn = GOLDEN_RAD * k + rng.normal(0.0, 0.25, count)
+    heading = aside(0.4 * along + np.array([0.0, 0.0, 0.6]), tilt, turn)
+    if w.stems > 1:
+        outward = start * np.array([1.0, 1.0, 0.0])
+        heading = unit(heading + 3.0 * outward)
+    inner = pull_inside(outline, start)
+    length = (np.linalg.norm(start - inner, axis=1) + room(outline, inner, heading)) * rng.uniform(
+        0.80, 0.97, count
+    )
+    base = np.minimum(0.72 * thick, 0.10 * length + 0.003)
+    limbs = sprout(start, heading, length, (base, 0.22 * base), 5, w.upturn, w.crooked, rng)
+    return _bounded(species, limbs)
+
+
+def _branches(species: Broadleaf, limbs: Branches, each: int, rng: np.random.Generator) -> Branches:
+    w = species.wood
+    parent = np.repeat(np.arange(len(limbs.points)), each)
+    slot = np.tile(np.arange(each), len(limbs.points))
+    t = 0.22 + 0.78 * (slot + rng.uniform(0.1, 0.9, len(slot))) / each
+    start, along, thick = limbs.at(parent, t)
+    angle = np.deg2rad(w.branch_angle_deg) * rng.uniform(0.7, 1.25, len(t)) * (1.15 - 0.5 * t)
+    heading = aside(along, angle, GOLDEN_RAD * slot + rng.uniform(0, 2 * np.pi, len(t)))
+    wanted = limbs.length()[parent] * (0.62 - 0.32 * t) * rng.uniform(0.7, 1.2, len(t))
+    length = np.minimum(np.maximum(wanted, 0.05), 0.95 * room(species.outline, start, heading))
+    base = np.minimum(0.7 * thick, 0.02 * length + 0.0018)
+    tip = np.minimum(0.4 * base, _TWIG_RADIUS[0])
+    return _bounded(species, sprout(start, heading, length, (base, tip), 3, w.twig_upturn, w.crooked, rng))
+
+
+def _twigs(species: Broadleaf, branches: Branches, each: int, rng: np.random.Generator) -> Branches:
+    w = species.wood
+    count = len(branches.points)
+    parent = np.repeat(np.arange(count), each)
+    slot = np.tile(np.arange(each), count)
+    t = 0.25 + 0.75 * (slot + rng.uniform(0.2, 1.0, len(slot))) / each
+    start, along, thick = branches.at(parent, t)
+    angle = np.deg2rad(0.9 * w.branch_angle_deg) * rng.uniform(0.6, 1.3, len(t))
+    heading = aside(along, angle, 2.6 * slot + rng.uniform(0, 2 * np.pi, len(t)))
+    heading = unit(heading + np.array([0.0, 0.0, 0.6 * w.twig_upturn]))
+    length = np.maximum(branches.length()[parent] * (0.75 - 0.3 * t), 0.03) * rng.uniform(0.7, 1.3, len(t))
+    base = np.minimum(0.8 * thick, _TWIG_RADIUS[0])
+    tip = np.full(len(t), _TWIG_RADIUS[1])
+    return _bounded(species, sprout(start, heading, length, (base, tip), 2, 0.0, 0.0, rng))
+
+
+def _bounded(species: Broadleaf, branches: Branches) -> Branches:
+    """The same with all nodes but the first inside the outline."""
+    points = branches.points.copy()
+    shape = points[:, 1:].shape
+    points[:, 1:] = pull_inside(species.outline, points[:, 1:].reshape(-1, 3)).reshape(shape)
+    step = np.linalg.norm(np.diff(points, axis=1), axis=2)
+    stuck = step < 1e-4
+    points[:, 1:][stuck] += np.array([0.0, 0.0, -2e-3])
+    return Branches(points, branches.radius)
+
+
+def _coarse(branches: Branches, bare: bool) -> Branches:
+    """In leaf, branches are straight: one segment each."""
+    return branches if bare else Branches(branches.points[:, [0, -1]], branches.radius[:, [0, -1]])
+
+
+def _foliage(
+    species: Broadleaf,
+    limbs: Branches,
+    branches: Branches,
+    twigs: Branches,
+    count: int,
+    in_leaf: float,
+    rng: np.random.Generator,
+) -> Mesh:
+    """Cards along twigs and branches, large hidden ones along limbs; falling foliage leaves twig by twig."""
+    leaf, outline = species.leaves, species.outline
+    hidden = int(_HIDDEN_SHARE * count)
+    outer = count - hidden
+    area = leaf.cover * side_area(outline) / (outer + _HIDDEN_AREA * hidden)
+    on_twig = np.arange(outer) % len(twigs.points)
+    t = rng.uniform(0.15, 1.05, outer) ** (1.0 - 0.8 * leaf.clumped)
+    base, along, _ = twigs.at(on_twig, t)
+    inside = np.arange(hidden) % len(branches.points)
+    base_in, along_in, _ = branches.at(inside, rng.uniform(0.0, 0.7, hidden))
+    base, along = np.concatenate([base, base_in]), np.concatenate([along, along_in])
+    size = np.concatenate([np.full(outer, 1.0), np.full(hidden, _HIDDEN_AREA)])
+    size *= area * rng.uniform(0.6, 1.5, count)
+    # A rhombus has half the area of its rectangle.
+    length = np.sqrt(2.0 * size * leaf.slender)
+    spin = unit(rng.normal(size=(count, 3)))
+    middle = np.array([0.0, 0.0, 0.5 * (outline.base + 1.0)])
+    outward = unit(base - middle)
+    heading = unit(along + 0.8 * spin + 0.5 * outward + np.array([0.0, 0.0, -1.2 * leaf.droop]))
+    facing = unit(rng.normal(size=(count, 3))) * 0.8 + outward + np.array([0.0, 0.0, 0.6])
+    base = base - 0.35 * length[:, None] * heading
+    if in_leaf < 1.0:
+        owner = np.concatenate([on_twig, inside])
+        keep = rng.uniform(size=len(twigs.points))[owner % len(twigs.points)] < in_leaf
+        base, heading, facing, length = base[keep], heading[keep], facing[keep], length[keep]
+    vertices, faces = cards(base, heading, facing, length, length / leaf.slender)
+    return pull_inside(outline, vertices), faces

@@ -1,0 +1,145 @@
+"""Shrubs: several stems from the ground under a dome of leaf cards; half of the kinds keep their leaves in winter."""
+
+from __future__ import annotations
+
+import numpy as np
+from jaxtyping import Float64
+
+from scenegen.classes import Semantic
+from scenegen.geometry.modelling import Modeller
+from scenegen.geometry.part import Part
+from scenegen.geometry.template import Template, place
+from scenegen.parts.vegetation.branches import GOLDEN_RAD, Branches, sprout, unit
+from scenegen.parts.vegetation.cards import cards
+from scenegen.parts.vegetation.foliage import leaf_fraction
+from scenegen.parts.vegetation.lumps import DOWN, UP, crown_sites, ring, supports, thrice, wood_sites
+from scenegen.parts.vegetation.tubes import tubes
+from scenegen.parts.workshop import Workshop
+
+BARK, LEAVES = 0, 1
+"""Surface slots of a shrub."""
+_FORMS = 4
+_CARDS, _STEMS, _SHOOTS = 74, 9, 3
+_FOOT = -0.06
+_BARE = 0.04
+_SITES = np.concatenate([UP, ring(4, 12.0), DOWN])
+_WOOD_SITES = np.concatenate([UP, ring(2, 0.0)])
+
+
+def shrubs(
+    position: Float64[np.ndarray, "n 3"],
+    size_m: Float64[np.ndarray, "n 3"],
+    heading_rad: Float64[np.ndarray, "n"],
+    shop: Workshop,
+    rng: np.random.Generator,
+) -> list[Part]:
+    """Free-standing shrubs, each with its own instance id, about 170 triangles.
+
+    Parameters
+    ----------
+    position : float64 (n, 3)
+        Where they stand on the ground [m].
+    size_m : float64 (n, 3)
+        Length, width and height; no leaf lies outside this box.
+    heading_rad : float64 (n,)
+    shop : Workshop
+        Its season strips the deciduous kinds.
+    rng : numpy.random.Generator
+    """
+    count = len(position)
+    owner = shop.builder.new_objects(count) + np.arange(count)
+    skins = np.column_stack(
+        [
+            np.asarray(shop.palette.variants(name), np.int64)[rng.integers(0, len(shop.palette.variants(name)), count)]
+            for name in ("bark_trunk", "tree_crown")
+        ]
+    )  # fmt: skip
+    form = rng.integers(0, _FORMS, count)
+    deciduous = leaf_fraction(shop.season)
+    parts = []
+    for k, child in enumerate(rng.spawn(_FORMS)):
+        mine = np.flatnonzero(form == k)
+        if len(mine):
+            template = shrub(1.0 if k % 2 == 0 else deciduous, child)
+            parts.append(
+                place(template, position[mine], heading_rad[mine], size_m[mine], skins[mine], owner[mine])
+            )
+    return parts
+
+
+def shrub(in_leaf: float, rng: np.random.Generator) -> Template:
+    """A shrub in the box -0.5..0.5, -0.5..0.5, 0..1, rooted a little below.
+
+    Parameters
+    ----------
+    in_leaf : float
+        Share of its foliage, 0..1.
+    rng : numpy.random.Generator
+    """
+    stems = _stems(rng)
+    model = Modeller()
+    if in_leaf < _BARE:
+        shoots = _shoots(stems, rng)
+        wood = [tubes(b, 3, True) for b in (stems, shoots)]
+        top = max(v[:, 2].max() for v, _ in wood)
+        for vertices, faces in wood:
+            _fit(vertices, top)
+            first = supports(model, vertices, _WOOD_SITES)
+            site = first + wood_sites((vertices, faces), _WOOD_SITES)
+            model.mesh(vertices, faces, BARK, Semantic.SHRUB, thrice(site))
+        return model.finish()
+    vertices, faces = tubes(stems, 3, True)
+    _fit(vertices, 1.0)
+    first = supports(model, vertices.mean(axis=0)[None], UP)
+    model.mesh(vertices, faces, BARK, Semantic.SHRUB, thrice(np.full(len(faces), first)))
+    leaves = _leaves(stems, in_leaf, rng)
+    first = supports(model, leaves[0], _SITES)
+    model.mesh(*leaves, LEAVES, Semantic.SHRUB, thrice(first + crown_sites(leaves, _SITES, rng, 2)))
+    return model.finish()
+
+
+def _stems(rng: np.random.Generator) -> Branches:
+    k = np.arange(_STEMS)
+    spread = np.sqrt((k + 0.5) / _STEMS)
+    turn = GOLDEN_RAD * k + rng.uniform(0, 2 * np.pi)
+    out = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(_STEMS)])
+    start = 0.12 * spread[:, None] * out + np.array([0.0, 0.0, _FOOT])
+    direction = 0.62 * spread[:, None] * out + np.array([0.0, 0.0, 1.0])
+    length = (0.95 - 0.25 * spread) * rng.uniform(0.75, 1.0, _STEMS)
+    thick = np.full(_STEMS, 0.016)
+    return sprout(start, unit(direction), length, (thick, 0.3 * thick), 3, 0.1, 0.12, rng)
+
+
+def _shoots(stems: Branches, rng: np.random.Generator) -> Branches:
+    parent = np.repeat(np.arange(_STEMS), _SHOOTS)
+    start, along, thick = stems.at(parent, rng.uniform(0.3, 0.9, len(parent)))
+    direction = unit(along + 0.8 * rng.normal(size=along.shape) + np.array([0.0, 0.0, 0.4]))
+    length = rng.uniform(0.2, 0.4, len(parent))
+    return sprout(start, direction, length, (0.7 * thick, 0.2 * thick), 2, 0.0, 0.0, rng)
+
+
+def _leaves(
+    stems: Branches, in_leaf: float, rng: np.random.Generator
+) -> tuple[Float64[np.ndarray, "vertices 3"], np.ndarray]:
+    """Cards on a lumpy dome and inside it."""
+    count = max(12, round(in_leaf * _CARDS))
+    stem = np.arange(count) % _STEMS
+    end, along, _ = stems.at(stem, rng.uniform(0.25, 1.0, count) ** 0.6)
+    spin = unit(rng.normal(size=(count, 3)))
+    base = end + spin * rng.uniform(0.02, 0.20, count)[:, None]
+    outward = unit(base - np.array([0.0, 0.0, 0.35]))
+    length = rng.uniform(0.22, 0.36, count)
+    facing = outward + 0.7 * unit(rng.normal(size=(count, 3)))
+    vertices, faces = cards(base, along + spin + 0.5 * outward, facing, length, length / 1.5)
+    reach = np.abs(vertices[:, :2]).max()
+    vertices[:, :2] *= 0.5 / reach
+    low, high = vertices[:, 2].min(), vertices[:, 2].max()
+    vertices[:, 2] = 0.02 + 0.98 * (vertices[:, 2] - low) / (high - low)
+    return vertices, faces
+
+
+def _fit(vertices: Float64[np.ndarray, "vertices 3"], top: float) -> None:
+    """Scale wood in place into the unit box; its foot stays."""
+    above = vertices[:, 2] > 0.0
+    vertices[above, 2] *= 1.0 / max(top, 1.0) if top <= 1.0 else 1.0 / top
+    vertices[:, :2] = np.clip(vertices[:, :2], -0.5, 0.5)

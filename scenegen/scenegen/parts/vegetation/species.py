@@ -1,0 +1,258 @@
+"""The species: what a tree of each kind looks like, as data for the growth models.
+
+Lengths are shares of the tree's height unless they say otherwise. Outlines and branching follow the descriptions of
+free-standing trees in field guides (e.g. Mitchell 1974, "A Field Guide to the Trees of Britain and Northern Europe");
+leaf-out order from common phenological calendars: birch and poplar a week before, oak a week after the average.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+
+@dataclass(frozen=True)
+class Outline:
+    """Outline of a crown, a solid of revolution.
+
+    Attributes
+    ----------
+    base : float
+        Height of its lower end.
+    widest : float
+        Where between base (0) and top (1) it is widest.
+    roundness : float
+        Exponent of its two halves: 1 is a double cone, 2 an ellipse, larger is boxier.
+    radius : float
+        Largest half-width.
+    """
+
+    base: float
+    widest: float
+    roundness: float
+    radius: float
+
+
+@dataclass(frozen=True)
+class Wood:
+    """How it branches.
+
+    Attributes
+    ----------
+    stems : int
+        Trunks that rise from the ground.
+    girth : float
+        Radius of the trunk above its flare.
+    leader : float
+        Height the trunk reaches as a trunk: apical dominance, 1 for conifers and poplars, 0.5 for oaks.
+    limbs, branches, twigs : int
+        Limbs of a large tree, branches of each limb, twigs of each branch.
+    limb_angle_deg : (float, float)
+        Between trunk and limb, for the lowest and the highest limb.
+    branch_angle_deg : float
+        Between a branch and what it grows from.
+    upturn : float
+        How much limbs turn towards the sky over their length; negative droops.
+    twig_upturn : float
+        The same for branches and twigs.
+    crooked : float
+        Random turn of a limb from one node to the next [rad].
+    """
+
+    stems: int
+    girth: float
+    leader: float
+    limbs: int
+    branches: int
+    twigs: int
+    limb_angle_deg: tuple[float, float]
+    branch_angle_deg: float
+    upturn: float
+    twig_upturn: float
+    crooked: float
+
+
+@dataclass(frozen=True)
+class Leaves:
+    """Foliage: cards that stand for sprays of leaves.
+
+    Attributes
+    ----------
+    cover : float
+        Area of all cards over the area of the crown's outline seen from the side; decides how much sky shines through.
+    slender : float
+        Length over width of a card.
+    droop : float
+        How far cards hang, 0 along the twig, 1 down.
+    clumped : float
+        How tightly cards keep to the ends of branches, 0 spread along them, 1 in tufts.
+    """
+
+    cover: float
+    slender: float
+    droop: float
+    clumped: float
+
+
+@dataclass(frozen=True)
+class Broadleaf:
+    """Branches order by order inside an outline; also pines and cypresses, which grow that way when free-standing."""
+
+    outline: Outline
+    wood: Wood
+    leaves: Leaves
+
+
+@dataclass(frozen=True)
+class Whorled:
+    """A conifer: a straight trunk and whorls of drooping boughs with hanging sprays.
+
+    Attributes
+    ----------
+    outline : Outline
+    girth : float
+    whorls, boughs : int
+        Whorls of a large tree; boughs of each.
+    rise_deg : (float, float)
+        Elevation of the lowest and the highest boughs where they leave the trunk.
+    sag : float
+        How far a bough bends down over its length; its tip turns up again.
+    curtain : float
+        How far the sprays hang below their bough.
+    """
+
+    outline: Outline
+    girth: float
+    whorls: int
+    boughs: int
+    rise_deg: tuple[float, float]
+    sag: float
+    curtain: float
+
+
+@dataclass(frozen=True)
+class Feather:
+    """A palm with feather fronds.
+
+    Attributes
+    ----------
+    outline : Outline
+        Only its radius counts: how far fronds reach.
+    girth : float
+    fronds, leaflets : int
+        Fronds of a crown; leaflets on each side of a large one.
+    lean : float
+        How far the trunk leans and curves.
+    """
+
+    outline: Outline
+    girth: float
+    fronds: int
+    leaflets: int
+    lean: float
+
+
+@dataclass(frozen=True)
+class Species:
+    """One kind of tree.
+
+    Attributes
+    ----------
+    name : str
+    growth : Broadleaf, Whorled or Feather
+    evergreen : bool
+    shift_d : float
+        Leaf-out against the average deciduous tree [d].
+    """
+
+    name: str
+    growth: Broadleaf | Whorled | Feather
+    evergreen: bool = False
+    shift_d: float = 0.0
+
+
+_ALL = (
+    Species(
+        "oak",
+        Broadleaf(
+            Outline(base=0.20, widest=0.42, roundness=2.3, radius=0.46),
+            Wood(1, 0.034, 0.52, 13, 6, 5, (82.0, 18.0), 48.0, 0.25, 0.15, 0.30),
+            Leaves(cover=3.0, slender=1.5, droop=0.15, clumped=0.45),
+        ),
+        shift_d=7.0,
+    ),
+    Species(
+        "lime",
+        Broadleaf(
+            Outline(base=0.17, widest=0.36, roundness=1.9, radius=0.34),
+            Wood(1, 0.024, 0.78, 17, 6, 4, (72.0, 20.0), 45.0, 0.35, -0.10, 0.14),
+            Leaves(cover=3.5, slender=1.25, droop=0.35, clumped=0.25),
+        ),
+    ),
+    Species(
+        "maple",
+        Broadleaf(
+            Outline(base=0.19, widest=0.48, roundness=2.2, radius=0.38),
+            Wood(1, 0.026, 0.62, 14, 6, 4, (62.0, 15.0), 42.0, 0.30, 0.20, 0.17),
+            Leaves(cover=3.6, slender=1.1, droop=0.20, clumped=0.3),
+        ),
+        shift_d=-2.0,
+    ),
+    Species(
+        "birch",
+        Broadleaf(
+            Outline(base=0.18, widest=0.34, roundness=1.6, radius=0.24),
+            Wood(1, 0.014, 0.94, 20, 5, 4, (52.0, 26.0), 40.0, 0.10, -0.85, 0.12),
+            Leaves(cover=2.4, slender=1.9, droop=0.75, clumped=0.15),
+        ),
+        shift_d=-8.0,
+    ),
+    Species(
+        "poplar",
+        Broadleaf(
+            Outline(base=0.07, widest=0.40, roundness=2.0, radius=0.125),
+            Wood(1, 0.019, 0.96, 26, 5, 3, (30.0, 14.0), 24.0, 0.45, 0.45, 0.08),
+            Leaves(cover=3.3, slender=1.4, droop=0.1, clumped=0.15),
+        ),
+        shift_d=-5.0,
+    ),
+    Species(
+        "spruce", Whorled(Outline(0.05, 0.04, 1.12, 0.21), 0.017, 19, 7, (-14.0, 42.0), 0.30, 0.30),
+        evergreen=True,
+    ),
+    Species(
+        "fir", Whorled(Outline(0.04, 0.06, 1.35, 0.18), 0.016, 21, 6, (2.0, 46.0), 0.12, 0.12), evergreen=True,
+    ),
+    Species(
+        "pine",
+        Broadleaf(
+            Outline(base=0.44, widest=0.52, roundness=2.1, radius=0.29),
+            Wood(1, 0.020, 0.86, 13, 5, 3, (88.0, 35.0), 50.0, 0.25, 0.45, 0.26),
+            Leaves(cover=2.5, slender=1.5, droop=-0.3, clumped=0.85),
+        ),
+        evergreen=True,
+    ),
+    Species(
+        "cypress",
+        Broadleaf(
+            Outline(base=0.03, widest=0.33, roundness=1.8, radius=0.085),
+            Wood(1, 0.014, 0.97, 26, 4, 2, (25.0, 12.0), 22.0, 0.45, 0.45, 0.05),
+            Leaves(cover=4.2, slender=2.2, droop=-0.5, clumped=0.1),
+        ),
+        evergreen=True,
+    ),
+    Species(
+        "olive",
+        Broadleaf(
+            Outline(base=0.22, widest=0.45, roundness=2.2, radius=0.50),
+            Wood(3, 0.040, 0.55, 11, 6, 4, (75.0, 15.0), 45.0, 0.20, -0.15, 0.42),
+            Leaves(cover=2.7, slender=2.2, droop=0.2, clumped=0.4),
+        ),
+        evergreen=True,
+    ),
+    Species("palm", Feather(Outline(0.6, 0.5, 2.0, 0.30), 0.022, 22, 13, 0.10), evergreen=True),
+)  # fmt: skip
+
+SPECIES: Mapping[str, Species] = MappingProxyType({s.name: s for s in _ALL})
+"""All species by name."""

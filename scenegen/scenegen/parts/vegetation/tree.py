@@ -1,0 +1,93 @@
+"""A tree as a template: grown, brought to its height and reach, and given its thermal sites."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from scenegen.classes import Semantic
+from scenegen.geometry.modelling import Modeller
+from scenegen.geometry.template import Template
+from scenegen.parts.vegetation import broadleaf, palm, whorled
+from scenegen.parts.vegetation.growth import Grown, Plan
+from scenegen.parts.vegetation.lumps import (
+    BARE,
+    CROWN,
+    crown_sites,
+    ring,
+    supports,
+    thrice,
+    wood_sites,
+)
+from scenegen.parts.vegetation.species import Broadleaf, Feather, Species
+from scenegen.parts.vegetation.tubes import Mesh
+
+BARK, LEAVES = 0, 1
+"""Surface slots of a tree."""
+_TRUNK_SIDES = ring(3, 0.0)
+_LIMB = np.array([[0.0, 0.0, 1.0]])
+
+
+def tree(species: Species, plan: Plan, rng: np.random.Generator) -> Template:
+    """Model one tree of height 1, with no leaf or twig farther from its axis than the species' radius.
+
+    Parameters
+    ----------
+    species : Species
+    plan : Plan
+        How many triangles, and how much foliage.
+    rng : numpy.random.Generator
+    """
+    grown = _sized(_grow(species, plan, rng), species.growth.outline.radius * rng.uniform(0.9, 1.0))
+    model = Modeller()
+    _trunk(model, grown.trunk)
+    if len(grown.leaves[1]):
+        _limbs_in_leaf(model, grown)
+        first = supports(model, grown.leaves[0], CROWN)
+        together = 2 if isinstance(species.growth, Broadleaf) else 1
+        site = first + crown_sites(grown.leaves, CROWN, rng, together)
+        model.mesh(*grown.leaves, LEAVES, Semantic.TREE, thrice(site))
+    else:
+        first = supports(model, grown.limbs[0], BARE)
+        model.mesh(*grown.limbs, BARK, Semantic.TREE, thrice(first + wood_sites(grown.limbs, BARE)))
+    return model.finish()
+
+
+def _grow(species: Species, plan: Plan, rng: np.random.Generator) -> Grown:
+    growth = species.growth
+    if isinstance(growth, Broadleaf):
+        return broadleaf.grow(growth, plan, rng)
+    if isinstance(growth, Feather):
+        return palm.grow(growth, plan, rng)
+    return whorled.grow(growth, plan, rng)
+
+
+def _sized(grown: Grown, radius: float) -> Grown:
+    """Stretched so that it ends at height 1 and reaches just so far; its foot stays where it is."""
+    everything = np.concatenate([grown.trunk[0], grown.limbs[0], grown.leaves[0]])
+    top = everything[:, 2].max()
+    wide = radius / np.hypot(everything[:, 0], everything[:, 1]).max()
+
+    def stretched(mesh: Mesh) -> Mesh:
+        vertices = mesh[0] * np.array([wide, wide, 1.0])
+        vertices[:, 2] = np.where(vertices[:, 2] > 0.0, vertices[:, 2] / top, vertices[:, 2])
+        return vertices, mesh[1]
+
+    return Grown(stretched(grown.trunk), stretched(grown.limbs), stretched(grown.leaves))
+
+
+def _trunk(model: Modeller, trunk: Mesh) -> None:
+    """Sites around the trunk, at breast height or a little above."""
+    vertices = trunk[0]
+    low = vertices[(vertices[:, 2] > 0.0) & (vertices[:, 2] < 0.35)]
+    first = supports(model, low if len(low) else vertices, _TRUNK_SIDES)
+    model.mesh(*trunk, BARK, Semantic.TREE, thrice(first + wood_sites(trunk, _TRUNK_SIDES)))
+
+
+def _limbs_in_leaf(model: Modeller, grown: Grown) -> None:
+    """One site in the middle of the crown, where leaves are all a branch sees."""
+    if not len(grown.limbs[1]):
+        return
+    vertices = grown.limbs[0]
+    middle = vertices[np.argmin(((vertices - vertices.mean(axis=0)) ** 2).sum(axis=1))]
+    first = supports(model, middle[None], _LIMB)
+    model.mesh(*grown.limbs, BARK, Semantic.TREE, thrice(np.full(len(grown.limbs[1]), first)))
