@@ -20,6 +20,7 @@ COMMANDS = {
     "verify": "check every byte, array and rule of a dataset",
     "doctor": "check this machine and say what to do",
     "maps": "list the kinds of worlds",
+    "classes": "list the semantic classes",
     "materials": "list the materials",
     "sensors": "list the cameras",
 }
