@@ -68,7 +68,11 @@ def test_sites_agree_with_their_faces(world):
     assert (owner == world.face_object[:, None]).all()
     near = np.linalg.norm(world.sites.position[world.corner_site] - corners(world, slice(None)), axis=2)
     detailed = np.abs(corners(world, slice(None))[..., :2]).max(axis=(1, 2)) < 330.0
-    assert np.quantile(near[detailed], 0.99) < 6.0
+    area = face_areas(world.mesh.vertices.astype(np.float64), world.mesh.faces.astype(np.int64))[detailed]
+    far = (
+        near[detailed].max(axis=1) > 6.0
+    )  # narrow ones may be: the reveals of twelve windows share their sites
+    assert area[far].sum() < 0.05 * area.sum()
 
 
 def test_size(world):
@@ -235,7 +239,7 @@ def test_knobs_are_honoured():
 
 
 def test_registry():
-    assert tuple(MAPS) == ("city",)
+    assert "city" in MAPS
     assert map_family("city").knobs is CityKnobs
     with pytest.raises(InputError, match="perhaps you meant 'city'"):
         map_family("citty")

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+from jaxtyping import Bool, Int64
 
 from scenegen.buildings.building import Building
 from scenegen.classes import Semantic
@@ -48,9 +50,27 @@ def _balcony() -> Template:
     return model.finish()
 
 
-def build_balconies(
+@dataclass(frozen=True, eq=False)
+class BalconyPlan:
+    """Cells of the window grids that have a balcony before them.
+
+    Attributes
+    ----------
+    wall, column, storey : int64 (balconies,)
+    """
+
+    wall: Int64[np.ndarray, "balconies"]
+    column: Int64[np.ndarray, "balconies"]
+    storey: Int64[np.ndarray, "balconies"]
+
+    def walls(self, count: int) -> Bool[np.ndarray, "walls"]:
+        """Which of `count` walls have any."""
+        return np.bincount(self.wall, minlength=count) > 0
+
+
+def plan_balconies(
     walls: Walls, filling: np.ndarray, buildings: Sequence[Building], rng: np.random.Generator
-) -> Part:
+) -> BalconyPlan:
     """Balconies at every second or third window column of chosen walls, above the ground floor."""
     wall, column, storey = walls.cells()
     chosen = np.array([b.object for b in buildings if b.style.balconies], np.int64)
@@ -59,7 +79,13 @@ def build_balconies(
     fits = np.isin(walls.object, chosen) & (length / walls.columns > 2.4) & (length > 9.0)
     fits &= rng.uniform(size=len(length)) < 0.6
     here = fits[wall] & (storey > 0) & (filling == WINDOW) & ((column + phase[wall]) % rhythm[wall] == 0)
-    wall, column, storey = wall[here], column[here], storey[here]
+    return BalconyPlan(wall[here], column[here], storey[here])
+
+
+def build_balconies(walls: Walls, plan: BalconyPlan) -> Part:
+    """Balconies as planned."""
+    wall, column, storey = plan.wall, plan.column, plan.storey
+    length = np.linalg.norm(walls.end - walls.start, axis=1)
     along = (walls.end - walls.start) / length[:, None]
     middle = walls.start[wall] + along[wall] * ((column + 0.5) / walls.columns[wall] * length[wall])[:, None]
     floor = walls.floor_m[wall] + walls.first_storey_m[wall] + (storey - 1) * walls.storey_m[wall]

@@ -19,6 +19,7 @@ from scenegen.geometry.template import Template, place
 
 _EDGE_M = 0.9
 _STACKS_APART_M = 1.5
+_STACK_M = (0.9, 0.6, 2.1)
 _ABOVE_ROOF = 0.75
 """Height of the sites of a stack's sides, in stack heights: the middle of what stands above the ridge."""
 
@@ -39,32 +40,28 @@ def _air_handler() -> Template:
     _lid(model, 0.85)
     for x in (-0.25, 0.25):
         model.tube(
-            np.array([x, 0, 0.8]), np.array([x, 0, 1.0]), 0.17, 0.17, 0, Semantic.ROOF_EQUIPMENT, sides=8
+            np.array([x, 0, 0.8]), np.array([x, 0, 0.93]), 0.17, 0.17, 0, Semantic.ROOF_EQUIPMENT, sides=8
         )
-        model.quads(
-            np.array(
-                [
-                    [
-                        [x - 0.12, -0.12, 0.96],
-                        [x + 0.12, -0.12, 0.96],
-                        [x + 0.12, 0.12, 0.96],
-                        [x - 0.12, 0.12, 0.96],
-                    ]
-                ]
-            ),
-            1,
-            Semantic.ROOF_EQUIPMENT,
-        )
+        _disc(model, x, 0.91)
     return model.finish()
+
+
+def _disc(model: Modeller, x: float, level: float) -> None:
+    """A fan that fills its tube: between the two one would look into the handler."""
+    angle = np.pi / 4 * np.arange(8)
+    rim = np.column_stack([x + 0.17 * np.sin(angle), -0.17 * np.cos(angle), np.full(8, level)])
+    faces = np.array([[0, k, k + 1] for k in range(1, 7)])
+    site = model.site(np.array([x, 0.0, level]), np.array([0.0, 0.0, 1.0]))
+    model.mesh(rim, faces, 1, Semantic.ROOF_EQUIPMENT, np.full(faces.shape, site))
 
 
 def _lid(model: Modeller, top: float) -> None:
     """The upper side of a handler, its sites in the corners: the middle looks against the fans."""
     corners = np.array([[-0.5, -0.5, top], [0.5, -0.5, top], [0.5, 0.5, top], [-0.5, 0.5, top]])
     inward = np.array([0.92, 0.8, 1.0])
-    first = [model.site(c * inward, np.array([0.0, 0.0, 1.0])) for c in corners][0]
+    sites = np.array([model.site(c * inward, np.array([0.0, 0.0, 1.0])) for c in corners])
     faces = np.array([[0, 1, 2], [0, 2, 3]])
-    model.mesh(corners, faces, 0, Semantic.ROOF_EQUIPMENT, first + faces)
+    model.mesh(corners, faces, 0, Semantic.ROOF_EQUIPMENT, sites[faces])
 
 
 def _vent() -> Template:
@@ -105,7 +102,7 @@ _MODELS = (
 
 @dataclass(frozen=True, eq=False)
 class RoofGear:
-    """Drawn equipment: parts, and the plan of each piece so that no roof sites lie below."""
+    """Drawn equipment: parts, and the plan of each piece (rectangles) so that no roof sites lie below."""
 
     parts: tuple[Part, ...]
     plans: np.ndarray
@@ -145,9 +142,9 @@ def draw_roof_gear(buildings: Sequence[Building], rng: np.random.Generator) -> R
                 objects,
             )
         )
-    chimneys = _chimneys(buildings, rng)
+    chimneys, stacks = _chimneys(buildings, rng)
     occupied = shapely.buffer(plans[keep], -0.5 * _EDGE_M, join_style="mitre")
-    return RoofGear((*parts, *chimneys), occupied)
+    return RoofGear((*parts, *chimneys), np.concatenate([occupied, stacks]))
 
 
 def _heading(building: Building) -> float:
@@ -157,8 +154,8 @@ def _heading(building: Building) -> float:
     return float(np.arctan2(longest[1], longest[0]))
 
 
-def _chimneys(buildings: Sequence[Building], rng: np.random.Generator) -> list[Part]:
-    """One or two stacks near the ridge of gables and hips."""
+def _chimneys(buildings: Sequence[Building], rng: np.random.Generator) -> tuple[list[Part], np.ndarray]:
+    """One or two stacks near the ridge of gables and hips, and their plans."""
     model = Modeller()
     model.box((-0.5, -0.5, 0), (0.5, 0.5, 1), 0, Semantic.CHIMNEY)
     stack = model.finish()
@@ -182,7 +179,8 @@ def _chimneys(buildings: Sequence[Building], rng: np.random.Generator) -> list[P
             skins.append([building.style.wall])
             objects.append(building.object)
     if not rows:
-        return []
+        return [], np.zeros(0, dtype=object)
     table = np.array(rows)
-    scale = np.tile([[0.9, 0.6, 2.1]], (len(table), 1))
-    return [place(stack, table[:, :3], table[:, 3], scale, np.array(skins), np.array(objects))]
+    scale = np.tile([_STACK_M], (len(table), 1))
+    plans = rectangles(table[:, :2], scale[:, 0], scale[:, 1], table[:, 3])
+    return [place(stack, table[:, :3], table[:, 3], scale, np.array(skins), np.array(objects))], plans

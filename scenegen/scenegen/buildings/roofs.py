@@ -15,11 +15,15 @@ from scenegen.geometry.part import Part, concatenate
 from scenegen.geometry.patch import patches
 from scenegen.geometry.planar import triangulate
 from scenegen.geometry.rings import inset, strip
+from scenegen.geometry.scatter import contact_points
 
 PARAPET_WIDTH_M = 0.28
 MANSARD_RUN_M = 1.1
-_TUCK_M = 0.02
-_SPACING_M = 2.9
+_TUCK_M, _NEEDLE_M = 0.02, 0.03
+_FLAT_M, _EDGE_M, _SLOPE_M = 3.6, 2.4, 3.5
+"""Spacing of sites on flat roofs, along their parapets, and on slopes."""
+_PARAPET_ROW, _GEAR_ROW = (2.3, -1.2), (1.8, 0.1)
+"""Spacing and distance of the rows behind parapets and around what stands on roofs: there the view changes."""
 _EAVES_M, _VERGE_M, _THICKNESS_M = 0.45, 0.3, 0.18
 _BEHIND_M = 0.05
 
@@ -39,7 +43,13 @@ def flat_outline(building: Building, volume: Volume) -> tuple[shapely.Polygon, f
     outline = shapely.Polygon(rings[0], rings[1:])
     if volume.covered is not None:
         outline = outline.difference(volume.covered.buffer(-_TUCK_M, join_style="mitre"))
-    return outline, level
+    return _without_spikes(outline), level
+
+
+def _without_spikes(outline: shapely.Polygon) -> shapely.Polygon:
+    """Outline without the needles that a mitred inset leaves at nearly straight corners."""
+    plain = outline.buffer(-_NEEDLE_M, join_style="mitre").buffer(_NEEDLE_M, join_style="mitre")
+    return plain if plain.geom_type == "Polygon" else outline
 
 
 def flat_roofs(volumes: Storeys, occupied: np.ndarray, rng: np.random.Generator) -> Part:
@@ -61,7 +71,11 @@ def flat_roofs(volumes: Storeys, occupied: np.ndarray, rng: np.random.Generator)
                 Region(flat[0], skin, int(Semantic.ROOF), building.object, level_m=flat[1], absolute=True)
             )
     outlines = [r.outline for r in regions]
-    plan = triangulate(outlines, _lattice(outlines, occupied, rng), _SPACING_M)
+    rows = [
+        contact_points(outlines, *_PARAPET_ROW),
+        _within(contact_points(list(occupied), *_GEAR_ROW), outlines),
+    ]
+    plan = triangulate(outlines, _lattice(outlines, occupied, rng), _EDGE_M, rows=np.concatenate(rows))
     return drape(plan, regions, lambda xy: np.zeros(len(xy)))
 
 
@@ -71,14 +85,19 @@ def _lattice(
     """Points on roofs, not below what stands on them."""
     points = []
     for x0, y0, x1, y1 in shapely.bounds(np.asarray(outlines, dtype=object)):
-        x, y = np.meshgrid(np.arange(x0 + 1.2, x1, _SPACING_M), np.arange(y0 + 1.2, y1, _SPACING_M))
+        x, y = np.meshgrid(np.arange(x0 + 1.2, x1, _FLAT_M), np.arange(y0 + 1.2, y1, _FLAT_M))
         points.append(np.column_stack([x.ravel(), y.ravel()]))
     cloud = np.concatenate(points)
     cloud = cloud + rng.uniform(-0.2, 0.2, cloud.shape)
-    tree = shapely.STRtree(np.asarray(outlines, dtype=object))
-    cloud = cloud[np.unique(tree.query(shapely.points(cloud), predicate="within")[0])]
+    cloud = _within(cloud, outlines)
     below = shapely.STRtree(occupied).query(shapely.points(cloud), predicate="within")[0]
     return np.delete(cloud, np.unique(below), axis=0)
+
+
+def _within(cloud: np.ndarray, outlines: Sequence[shapely.Polygon]) -> np.ndarray:
+    """Points that lie on a roof."""
+    tree = shapely.STRtree(np.asarray(outlines, dtype=object))
+    return np.asarray(cloud[np.unique(tree.query(shapely.points(cloud), predicate="within")[0])])
 
 
 def sloped_roofs(volumes: Storeys) -> Part:
@@ -114,7 +133,7 @@ def sloped_roofs(volumes: Storeys) -> Part:
             thin.append((edges, style.roof, roof, building.object))
             if len(gables):
                 tops.append((gables, style.wall, int(Semantic.WALL), building.object))
-    return concatenate([_patched(tops, _SPACING_M, False), _patched(thin, 6.0, True)])
+    return concatenate([_patched(tops, _SLOPE_M, False), _patched(thin, 6.0, True)])
 
 
 def _patched(items: list[tuple[np.ndarray, int, int, int]], spacing_m: float, lumped: bool) -> Part:

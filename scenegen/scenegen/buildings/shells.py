@@ -7,13 +7,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from scenegen.buildings.balconies import build_balconies
+from scenegen.buildings.balconies import build_balconies, plan_balconies
 from scenegen.buildings.building import Building
 from scenegen.buildings.courses import wall_table
 from scenegen.buildings.roofs import PARAPET_WIDTH_M, Storeys, flat_roofs, sloped_roofs
 from scenegen.buildings.styles import Roof
 from scenegen.classes import Semantic
 from scenegen.geometry.facade import facades
+from scenegen.geometry.hidden import push_out
 from scenegen.geometry.part import Part, concatenate
 from scenegen.geometry.patch import patches
 from scenegen.geometry.rings import inset, strip
@@ -21,6 +22,9 @@ from scenegen.geometry.rings import inset, strip
 _BLANK_SPACING_M = 4.0
 _BAND_M = 0.14
 _FIRST_SITE_M = 0.15
+_PANES_PER_SITE = (2, 2)
+_BESIDE_M = 0.5
+"""Distance of the sites of pitched roofs from stacks."""
 
 
 def build_shells(buildings: Sequence[Building], roof_plans: np.ndarray, rng: np.random.Generator) -> Part:
@@ -30,7 +34,7 @@ def build_shells(buildings: Sequence[Building], roof_plans: np.ndarray, rng: np.
     ----------
     buildings : sequence of Building
     roof_plans : array of shapely.Polygon
-        Plan of what will stand on flat roofs.
+        Plan of what will stand on roofs, rectangles.
     rng : numpy.random.Generator
     """
     table = wall_table(buildings, rng)
@@ -38,14 +42,15 @@ def build_shells(buildings: Sequence[Building], roof_plans: np.ndarray, rng: np.
     blank = patches(table.blank, _BLANK_SPACING_M, table.blank_surface, wall, table.blank_object)
     blank = _sites_above_ground(blank, buildings)
     volumes = [(b, v) for b in buildings for v in b.volumes]
+    balconies = plan_balconies(table.walls, table.filling, buildings, rng)
     return concatenate(
         [
-            facades(table.walls, table.filling),
-            build_balconies(table.walls, table.filling, buildings, rng),
+            facades(table.walls, table.filling, balconies.walls(len(table.walls.start)), _PANES_PER_SITE),
+            build_balconies(table.walls, balconies),
             blank,
             _trim(volumes),
             flat_roofs(volumes, roof_plans, rng),
-            sloped_roofs(volumes),
+            push_out(sloped_roofs(volumes), roof_plans, _BESIDE_M),
         ]
     )
 

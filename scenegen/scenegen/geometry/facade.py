@@ -2,7 +2,8 @@
 
 A wall is a tensor grid of lines: jambs of the window columns across, sills and heads of the storeys
 upwards. Its thermal sites are coarser than its vertices: one per crossing of every second pier with a
-spandrel, shared by all grid points around that crossing. A pane has one site.
+spandrel, shared by all grid points around that crossing. Panes have sites of their own, or share
+one with a neighbour; and so do the reveals of a few windows: sills see the sky where the wall sees the street.
 """
 
 from __future__ import annotations
@@ -21,6 +22,8 @@ BLANK, WINDOW, DOOR = 0, 1, 2
 """What fills a cell of the window grid."""
 
 _PLINTH_M = 0.6
+_REVEALS_PER_SITE = (4, 3)
+"""Window columns and storeys that share the sites of their reveals."""
 _DOOR_LOWER_M, _DOOR_UPPER = 0.3, 0.7
 """Height of the two sites of a door: above the floor, and in heights of its head."""
 
@@ -94,7 +97,12 @@ class _Lattice:
     site_normal: Float64[np.ndarray, "sites 3"]
 
 
-def facades(walls: Walls, filling: Int64[np.ndarray, "cells"]) -> Part:
+def facades(
+    walls: Walls,
+    filling: Int64[np.ndarray, "cells"],
+    balconied: Bool[np.ndarray, "walls"] | None = None,
+    panes_per_site: tuple[int, int] = (1, 1),
+) -> Part:
     """Build all walls.
 
     Parameters
@@ -103,18 +111,29 @@ def facades(walls: Walls, filling: Int64[np.ndarray, "cells"]) -> Part:
     filling : int64 (cells,)
         `BLANK`, `WINDOW` or `DOOR` for every cell of `Walls.cells`. Doors are honoured on the ground floor
         and reach from the floor to the window's head; they lie flush.
+    balconied : bool (walls,), optional
+        Walls whose upper storeys have balconies: their sites lie beside the windows, above the rails. At the height
+        of the floors they would see balconies alone.
+    panes_per_site : (int, int)
+        Window columns and storeys whose panes share a site.
     """
     normal = _outward(walls)
-    lattice = _lattice(walls, normal)
+    if balconied is None:
+        balconied = np.zeros(len(normal), bool)
+    lattice = _lattice(walls, normal, balconied)
     columns, rows = 2 * walls.columns + 2, 2 * walls.storeys + 3
     item, i, j, quads = lattice_quads(columns, rows)
     kind = _quad_filling(walls, filling, item, i, j)
     pane = (kind == WINDOW) & (j >= 2) & (j % 2 == 0)
+    groups = (
+        _grouped(walls, item[pane], (i[pane] - 1) // 2, (j[pane] - 2) // 2, *panes_per_site),
+        _grouped(walls, item[pane], (i[pane] - 1) // 2, (j[pane] - 2) // 2, *_REVEALS_PER_SITE),
+    )
     door = (kind == DOOR) & (j <= 2)
     semantic = np.where(door, int(Semantic.DOOR), int(Semantic.WALL))
     surface = np.where(door, walls.door[item], walls.surface[item])
     doors = _doors(walls, item[door], i[door], j[door])
-    return _assemble(walls, normal, lattice, item, quads, pane, door, doors, semantic, surface)
+    return _assemble(walls, normal, lattice, item, quads, pane, groups, door, doors, semantic, surface)
 
 
 def _outward(walls: Walls) -> np.ndarray:
@@ -145,7 +164,7 @@ def _row_lines(walls: Walls, item: np.ndarray, j: np.ndarray) -> np.ndarray:
     return np.asarray(np.where(j == 2 * storeys + 2, (walls.top_m - walls.floor_m)[item], height))
 
 
-def _lattice(walls: Walls, normal: np.ndarray) -> _Lattice:
+def _lattice(walls: Walls, normal: np.ndarray, balconied: np.ndarray) -> _Lattice:
     columns, rows = 2 * walls.columns + 2, 2 * walls.storeys + 3
     item, i, j = ragged_grid(columns, rows)
     vertices = _on_wall(walls, item, _column_lines(walls, item, i), _row_lines(walls, item, j))
@@ -163,6 +182,11 @@ def _lattice(walls: Walls, normal: np.ndarray) -> _Lattice:
     low, high = np.maximum(2 * s_j - 1, 0), 2 * s_j
     z = (_row_lines(walls, s_item, low) + _row_lines(walls, s_item, high)) / 2
     z = np.where((s_j == 0), 0.15, z)
+    raised = balconied[s_item] & (s_j >= 2) & (s_j <= walls.storeys[s_item])
+    beside = (
+        _row_lines(walls, s_item, high) + _row_lines(walls, s_item, np.where(raised, high + 1, high))
+    ) / 2
+    z = np.where(raised, beside, z)
     return _Lattice(vertices, site, _on_wall(walls, s_item, x, z), normal[s_item])
 
 
@@ -210,6 +234,51 @@ def _quad_filling(
     return np.where(i % 2 == 1, filling[cell], BLANK)
 
 
+def _grouped(
+    walls: Walls, item: np.ndarray, column: np.ndarray, storey: np.ndarray, columns: int, storeys: int
+) -> Int64[np.ndarray, "panes"]:
+    """Number of the group of each pane: so many columns by so many storeys of a wall."""
+    key = (item * (walls.storeys.max() + 1) + storey // storeys) * (
+        walls.columns.max() + 1
+    ) + column // columns
+    return np.asarray(np.unique(key, return_inverse=True)[1].ravel())
+
+
+def _leaders(group: Int64[np.ndarray, "panes"]) -> Int64[np.ndarray, "groups"]:
+    """A pane near the middle of the lowest row of each group."""
+    order = np.argsort(group, kind="stable")
+    _, first, count = np.unique(group[order], return_index=True, return_counts=True)
+    return np.asarray(order[first + (count + 1) // 4])
+
+
+@dataclass(frozen=True, eq=False)
+class _Reveals:
+    """Sites of reveals: a sill sees the sky and a lintel the street, where the wall sees half of each.
+
+    Attributes
+    ----------
+    corner_site : int64 (quads, 4)
+        Four quads per opening: sill, right jamb, lintel, left jamb.
+    position, normal : float64 (sites, 3)
+    """
+
+    corner_site: Int64[np.ndarray, "quads 4"]
+    position: Float64[np.ndarray, "sites 3"]
+    normal: Float64[np.ndarray, "sites 3"]
+
+
+def _reveals(corners: np.ndarray, inner: np.ndarray, group: np.ndarray) -> _Reveals:
+    """Sites of the reveals between the corners of openings (counter-clockwise from the lower left) and of panes."""
+    lead = _leaders(group)
+    outer, inner = corners[lead], inner[lead]
+    ring = np.array([1, 2, 3, 0])
+    middle = (outer + outer[:, ring] + inner + inner[:, ring]) / 4
+    across = np.cross(outer[:, ring] - outer, inner - outer)
+    normal = across / np.linalg.norm(across, axis=2)[..., None]
+    site = (4 * group[:, None] + np.arange(4)).reshape(-1, 1)
+    return _Reveals(np.repeat(site, 4, axis=1), middle.reshape(-1, 3), normal.reshape(-1, 3))
+
+
 def _assemble(
     walls: Walls,
     normal: np.ndarray,
@@ -217,12 +286,13 @@ def _assemble(
     item: np.ndarray,
     quads: np.ndarray,
     pane: Bool[np.ndarray, "quads"],
+    groups: tuple[Int64[np.ndarray, "panes"], Int64[np.ndarray, "panes"]],
     door: Bool[np.ndarray, "quads"],
     doors: _Doors,
     semantic: np.ndarray,
     surface: np.ndarray,
 ) -> Part:
-    """Solid quads, then reveals, then panes, which have one site each."""
+    """Solid quads, then reveals, then panes; `groups` tells which panes, and which reveals, share a site."""
     solid = ~pane
     opening = quads[pane]
     owner = item[pane]
@@ -233,16 +303,18 @@ def _assemble(
     ring = np.array([1, 2, 3, 0])
     after = opening[:, ring]
     reveals = np.stack([opening, after, inner_id[:, ring], inner_id], axis=2).reshape(-1, 4)
-    reveal_site = lattice.site[np.stack([opening, after, after, opening], axis=2)].reshape(-1, 4)
 
     site_count = len(lattice.site_position)
     door_count = len(doors.position)
     quad_site = lattice.site[quads]
     quad_site[door] = site_count + doors.corner_site
-    pane_site = np.repeat((site_count + door_count + np.arange(count))[:, None], 4, axis=1)
+    first_pane, pane_lead = site_count + door_count, _leaders(groups[0])
+    first_reveal = first_pane + len(pane_lead)
+    pane_site = np.repeat((first_pane + groups[0])[:, None], 4, axis=1)
+    around = _reveals(lattice.vertices[opening], inner, groups[1])
 
     all_quads = np.concatenate([quads[solid], reveals, inner_id])
-    all_sites = np.concatenate([quad_site[solid], reveal_site, pane_site])
+    all_sites = np.concatenate([quad_site[solid], first_reveal + around.corner_site, pane_site])
     wall_of = np.concatenate([item[solid], np.repeat(owner, 4), owner])
     labels = np.concatenate(
         [semantic[solid], np.full(4 * count, int(Semantic.WALL)), np.full(count, int(Semantic.WINDOW))]
@@ -256,7 +328,11 @@ def _assemble(
         semantic=np.repeat(labels, 2),
         object=np.repeat(walls.object[wall_of], 2),
         corner_site=quads_to_triangles(all_sites),
-        site_position=np.concatenate([lattice.site_position, doors.position, inner.mean(axis=1)]),
-        site_normal=np.concatenate([lattice.site_normal, normal[doors.wall], normal[owner]]),
-        site_standoff=np.full(site_count + door_count + count, STANDOFF_M),
+        site_position=np.concatenate(
+            [lattice.site_position, doors.position, inner.mean(axis=1)[pane_lead], around.position]
+        ),
+        site_normal=np.concatenate(
+            [lattice.site_normal, normal[doors.wall], normal[owner[pane_lead]], around.normal]
+        ),
+        site_standoff=np.full(first_reveal + len(around.position), STANDOFF_M),
     )

@@ -154,7 +154,9 @@ def _surface(
     )
 
 
-def _merged(points: np.ndarray, code: np.ndarray, cell_m: np.ndarray, grain_m: np.ndarray) -> tuple[np.ndarray, int]:
+def _merged(
+    points: np.ndarray, code: np.ndarray, cell_m: np.ndarray, grain_m: np.ndarray
+) -> tuple[np.ndarray, int]:
     """Site of each code (point times kinds plus kind; negative for lumps), those in one cell made one; their number."""
     point, kind = np.divmod(np.maximum(code, 0), len(grain_m))
     size = np.where(code < 0, 0.0, np.maximum(cell_m[point], grain_m[kind]))
@@ -225,7 +227,9 @@ def _step_part(corners: np.ndarray, region: np.ndarray, table: _Table) -> Part:
     faces = quads_to_triangles(np.arange(4 * count).reshape(-1, 4))
     vertices = corners.reshape(-1, 3)
     normals, area = face_normals(vertices, faces)
-    way = np.rint(np.arctan2(normals[::2, 1], normals[::2, 0]) * (_WAYS / (2 * np.pi))).astype(np.int64) % _WAYS
+    way = (
+        np.rint(np.arctan2(normals[::2, 1], normals[::2, 0]) * (_WAYS / (2 * np.pi))).astype(np.int64) % _WAYS
+    )
     cell = np.floor(corners[:, :, :2].mean(axis=1) / _KERB_CELL_M).astype(np.int64)
     _, site = np.unique(np.column_stack([region, way, cell]), axis=0, return_inverse=True)
     site = site.ravel()

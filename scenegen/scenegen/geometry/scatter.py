@@ -38,7 +38,7 @@ def hexagonal(
 
 
 def graded_points(
-    core: shapely.Polygon, far_m: float, spacing_m: float, rng: np.random.Generator
+    core: shapely.Polygon, far_m: float, spacing_m: float, rng: np.random.Generator, leap: float = 2.0
 ) -> Float64[np.ndarray, "points 2"]:
     """Fine lattice on a polygon, then bands around it, each twice as coarse and as wide as the last.
 
@@ -51,12 +51,14 @@ def graded_points(
     spacing_m : float
         Of the fine lattice [m].
     rng : numpy.random.Generator
+    leap : float
+        How much coarser than the lattice the first band is.
     """
     shapely.prepare(core)
     x0, y0, x1, y1 = core.bounds
     points = hexagonal(x0, y0, x1, y1, spacing_m, rng)
     bands = [points[shapely.contains_xy(core, points)]]
-    inner, spacing = 0.0, spacing_m
+    inner, spacing = 0.0, spacing_m * leap / 2.0
     while inner < 2 * far_m:
         spacing = min(2.0 * spacing, far_m / 10)
         outer = inner + 4 * spacing

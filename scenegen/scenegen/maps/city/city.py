@@ -14,7 +14,7 @@ from scenegen.maps.city.districts import lay_out
 from scenegen.maps.city.furniture import build_furniture
 from scenegen.maps.city.greenery import build_greenery
 from scenegen.maps.city.knobs import CityKnobs
-from scenegen.maps.city.outskirts import far_objects
+from scenegen.maps.city.outskirts import far_objects, plan_far
 from scenegen.maps.city.park import plan_park
 from scenegen.maps.city.streets import draw_streets
 from scenegen.maps.city.terrain import build_terrain
@@ -51,13 +51,14 @@ def build_city(knobs: CityKnobs, season: Season, rng: np.random.Generator) -> Wo
     parks = {k: plan_park(b.yard, parks_rng) for k, b in enumerate(layout.blocks) if b.use is Use.PARK}
     gear = draw_roof_gear(layout.buildings, gear_rng)
     traffic = plan_traffic(plan, layout, knobs, cars_rng)
+    land = plan_far(plan, far)
 
-    builder.add(build_terrain(plan, layout, parks, traffic.outlines(), shop, ground))
+    builder.add(build_terrain(plan, layout, parks, traffic.outlines(), land.outlines(), shop, ground))
     builder.add(build_shells(layout.buildings, gear.plans, walls), *gear.parts)
     cars = build_traffic(traffic, shop, cars_rng)
     furniture, posts = build_furniture(plan, parks, shop, posts_rng)
     trees, tree_count = build_greenery(layout, parks, posts, shop, green)
-    builder.add(*cars, *furniture, *trees, *far_objects(plan, shop, far))
+    builder.add(*cars, *furniture, *trees, *far_objects(land, shop, far))
     merged = builder.merge()
     half = _inner_half(plan.outline)
     return World(

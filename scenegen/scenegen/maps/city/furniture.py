@@ -21,9 +21,10 @@ _FROM_KERB_M = 0.6
 def lamp() -> Template:
     """A post of eight metres with an arm over the street (+x)."""
     model = Modeller()
-    model.tube(np.array([0, 0, -0.1]), np.array([0, 0, 0.9]), 0.12, 0.11, 0, Semantic.POLE, sides=6, sites=2)
-    model.tube(np.array([0, 0, 0.9]), np.array([0, 0, 7.6]), 0.08, 0.055, 0, Semantic.POLE, sides=6, sites=2)
-    model.tube(np.array([0, 0, 7.55]), np.array([1.7, 0, 8.0]), 0.05, 0.035, 0, Semantic.POLE, sides=5)
+    model.tube(np.array([0, 0, -0.1]), np.array([0, 0, 0.9]), 0.12, 0.11, 0, Semantic.POLE, sides=6, sites=3)
+    model.tube(np.array([0, 0, 0.9]), np.array([0, 0, 7.6]), 0.08, 0.055, 0, Semantic.POLE, sides=6, sites=4)
+    arm = np.array([0, 0, 7.55]), np.array([1.7, 0, 8.0])
+    model.tube(*arm, 0.05, 0.035, 0, Semantic.POLE, sides=6, sites=4)
     model.box((1.3, -0.17, 7.95), (2.1, 0.17, 8.09), 0, Semantic.POLE)
     model.quads(
         np.array([[[1.3, -0.17, 7.95], [1.3, 0.17, 7.95], [2.1, 0.17, 7.95], [2.1, -0.17, 7.95]]]),
@@ -36,7 +37,7 @@ def lamp() -> Template:
 def traffic_light() -> Template:
     """Three lamps in a box at a post of 3.4 metres."""
     model = Modeller()
-    model.tube(np.array([0, 0, -0.1]), np.array([0, 0, 3.4]), 0.07, 0.06, 0, Semantic.POLE, sides=6, sites=2)
+    model.tube(np.array([0, 0, -0.1]), np.array([0, 0, 3.4]), 0.07, 0.06, 0, Semantic.POLE, sides=6, sites=3)
     model.box((0.05, -0.16, 2.5), (0.3, 0.16, 3.45), 0, Semantic.TRAFFIC_LIGHT, LUMP_STANDOFF_M)
     return model.finish()
 
@@ -44,7 +45,8 @@ def traffic_light() -> Template:
 def sign() -> Template:
     """A plate at a thin post; its back sees past the post."""
     model = Modeller()
-    model.tube(np.array([0, 0, -0.1]), np.array([0, 0, 2.7]), 0.035, 0.035, 0, Semantic.POLE, sides=5)
+    post = np.array([0, 0, -0.1]), np.array([0, 0, 2.7])
+    model.tube(*post, 0.035, 0.035, 0, Semantic.POLE, sides=6, sites=3)
     model.box((0.035, -0.35, 2.0), (0.06, 0.35, 2.7), 0, Semantic.SIGN, LUMP_STANDOFF_M)
     return model.finish()
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
+from jaxtyping import Bool, Float64
 
 from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region
@@ -59,11 +60,33 @@ def far_regions(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) 
     return regions
 
 
-def far_objects(
-    plan: StreetPlan,
-    shop: CityWorkshop,
-    rng: np.random.Generator,
-) -> list[Part]:
+@dataclass(frozen=True, eq=False)
+class FarPlan:
+    """Plain buildings and groves around the city.
+
+    Attributes
+    ----------
+    centre : float64 (things, 2)
+        [m].
+    size : float64 (things, 3)
+        Length, width and height [m].
+    heading_rad : float64 (things,)
+    built : bool (things,)
+        Buildings; the rest are groves.
+    """
+
+    centre: Float64[np.ndarray, "things 2"]
+    size: Float64[np.ndarray, "things 3"]
+    heading_rad: Float64[np.ndarray, "things"]
+    built: Bool[np.ndarray, "things"]
+
+    def outlines(self) -> np.ndarray:
+        """Rectangles around everything, an array of shapely polygons."""
+        width = np.where(self.built, self.size[:, 1], self.size[:, 0])
+        return rectangles(self.centre, self.size[:, 0], width, self.heading_rad)
+
+
+def plan_far(plan: StreetPlan, rng: np.random.Generator) -> FarPlan:
     """Plain buildings and groves, denser towards the city; they thin out with distance."""
     half = float(np.abs(plan.outline.bounds).max())
     count = 1200
@@ -85,9 +108,15 @@ def far_objects(
     size = np.column_stack(
         [length, width, np.where(rng.uniform(size=count) < 0.08, 28.0, rng.uniform(5.0, 15.0, count))]
     )
+    return FarPlan(centre[keep], size[keep], heading[keep], built[keep])
+
+
+def far_objects(far: FarPlan, shop: CityWorkshop, rng: np.random.Generator) -> list[Part]:
+    """What was planned, as parts."""
+    built, grown = far.built, ~far.built
     return [
-        _plain_buildings(centre[keep & built], size[keep & built], heading[keep & built], shop, rng),
-        _groves(centre[keep & ~built], size[keep & ~built], shop, rng),
+        _plain_buildings(far.centre[built], far.size[built], far.heading_rad[built], shop, rng),
+        _groves(far.centre[grown], far.size[grown], shop, rng),
     ]
 
 

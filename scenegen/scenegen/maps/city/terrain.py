@@ -10,6 +10,7 @@ import shapely
 
 from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region, drape
+from scenegen.geometry.hidden import push_out
 from scenegen.geometry.part import Part
 from scenegen.geometry.planar import triangulate
 from scenegen.geometry.scatter import contact_points, graded_points, hexagonal
@@ -22,16 +23,21 @@ from scenegen.maps.city.uses import Use
 from scenegen.maps.city.workshop import CityWorkshop
 
 KERB_M = 0.12
-_FINE_M, _COARSE_M, _NEAR_M = 2.9, 4.2, 4.0
+_FINE_M, _COARSE_M, _NEAR_M = 2.9, 4.5, 3.8
 """Spacing of the lattice within `_NEAR_M` of walls and cars, and elsewhere."""
-_LINE_M, _CAR_LINE_M = 3.2, 1.45
+_LEAP, _FIELD_LINE_M = 3.5, 12.0
+"""Around the city: how much coarser the lattice starts than inside, and the spacing along the outlines of fields."""
+_LINE_M, _CAR_LINE_M = 3.9, 1.5
 """Spacing along lines: of paving and kerbs, and around cars."""
+_FAR_LINES_M, _FAR_TUCK_M, _FAR_ROW, _FAR_BESIDE_M = 350.0, 0.3, (14.0, 7.0), 2.5
+"""Around the city: how far out plain buildings and groves have contact lines, how far these lie below them, their
+rows of points, and how far beyond the sites keep clear of them."""
 _SILL_M = 0.15
 """How far below a car the ground still looks out past its sill."""
-_ROAD_GRAIN_M, _GRAIN_M = 0.5, 0.9
+_ROAD_GRAIN_M, _GRAIN_M = 0.6, 0.9
 _WALL_ROW = (1.6, 1.0)
 """Spacing, distance: the row of points along walls, and the spacing on the contact line itself."""
-_CAR_ROWS = ((1.5, 0.6), (2.6, 1.6))
+_CAR_ROWS = ((1.6, 0.65), (3.2, 1.7))
 """The same for rows around cars: what a car hides of the sky falls off within its height."""
 _TUCK_M = 0.01
 
@@ -41,6 +47,7 @@ def build_terrain(
     layout: Layout,
     parks: dict[int, ParkPlan],
     cars: np.ndarray,
+    far: np.ndarray,
     shop: CityWorkshop,
     rng: np.random.Generator,
 ) -> Part:
@@ -50,20 +57,23 @@ def build_terrain(
     ----------
     plan, layout, parks
         What was drawn so far; parks by block index.
-    cars : array of shapely.Polygon
-        Plan of each car.
+    cars, far : array of shapely.Polygon
+        Plan of each car, and of what stands on the land around, rectangles.
     shop : CityWorkshop
     rng : numpy.random.Generator
     """
     dry_share = rng.uniform(*shop.knobs.dry_lawn_share)
     regions = far_regions(plan, shop, rng)
+    near = far[shapely.distance(plan.outline, far) < _FAR_LINES_M]
+    regions += _covered(shapely.buffer(near, -_FAR_TUCK_M, join_style="mitre"), regions)
+    fields = len(regions)
     regions += _streets(plan, shop, rng)
     for k, block in enumerate(layout.blocks):
         regions += _block_regions(block, dry_share, shop, rng)
         if k in parks:
             regions += park_regions(parks[k], shop, rng)
     regions += _paths(layout, shop, rng)
-    regions += _below_cars(cars, regions)
+    regions += _covered(shapely.buffer(cars, -_SILL_M, join_style="mitre"), regions)
     holes = shapely.union_all([b.footprint for b in layout.buildings]).buffer(-_TUCK_M, join_style="mitre")
     solid = list(getattr(holes, "geoms", [holes]))
     regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in solid]
@@ -73,11 +83,13 @@ def build_terrain(
     plane = triangulate(
         outlines,
         _lattice(plan, solid, cars, rng),
-        np.array([_line_spacing(r) for r in regions]),
+        np.array([_FIELD_LINE_M if k < fields else _line_spacing(r) for k, r in enumerate(regions)]),
         (half * 1.03, 0.2),
-        np.concatenate([contact_points(list(cars), *row) for row in _CAR_ROWS]),
+        np.concatenate(
+            [*(contact_points(list(cars), *row) for row in _CAR_ROWS), contact_points(list(near), *_FAR_ROW)]
+        ),
     )
-    return drape(plane, regions, shop.relief)
+    return push_out(drape(plane, regions, shop.relief), far, _FAR_BESIDE_M)
 
 
 def _lattice(
@@ -91,9 +103,10 @@ def _lattice(
         mask[near.query(shapely.points(points), predicate="dwithin", distance=reach_m)[0]] = True
         return mask
 
-    fine = hexagonal(*plan.outline.bounds, _FINE_M, rng)
+    x0, y0, x1, y1 = plan.outline.bounds
+    fine = hexagonal(x0, y0, x1, y1, _FINE_M, rng)
     fine = fine[shapely.contains_xy(plan.outline, fine)]
-    coarse = graded_points(plan.outline.buffer(3.0), FAR_M, _COARSE_M, rng)
+    coarse = graded_points(plan.outline.buffer(3.0), FAR_M, _COARSE_M, rng, _LEAP)
     return np.concatenate(
         [
             contact_points(solid, *_WALL_ROW),
@@ -115,15 +128,14 @@ def _grain(region: Region) -> float:
     return _ROAD_GRAIN_M if region.semantic == int(Semantic.ROAD) else _GRAIN_M
 
 
-def _below_cars(cars: np.ndarray, regions: Sequence[Region]) -> list[Region]:
-    """The ground below each car, with a site of its own: beside the car it is another world."""
+def _covered(plans: np.ndarray, regions: Sequence[Region]) -> list[Region]:
+    """The ground below each thing, with a site of its own: beside the thing it is another world."""
     whole = [r for r in regions if not r.lumped]
     tree = shapely.STRtree(np.array([r.outline for r in whole], dtype=object))
-    car, ground = tree.query(shapely.centroid(cars), predicate="intersects")
-    top = np.zeros(len(cars), np.int64)
-    np.maximum.at(top, car, ground)
-    dark = shapely.buffer(cars, -_SILL_M, join_style="mitre")
-    return [replace(whole[k], outline=car, lumped=True) for car, k in zip(dark, top.tolist(), strict=True)]
+    thing, ground = tree.query(shapely.centroid(plans), predicate="intersects")
+    top = np.zeros(len(plans), np.int64)
+    np.maximum.at(top, thing, ground)
+    return [replace(whole[k], outline=p, lumped=True) for p, k in zip(plans, top.tolist(), strict=True)]
 
 
 def _streets(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) -> list[Region]:
@@ -132,7 +144,9 @@ def _streets(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) -> 
     marking = shop.builder.new_objects()
     regions = [Region(plan.outline, shop.palette.pick("asphalt_aged", rng), int(Semantic.ROAD), road)]
     quads = shapely.polygons(marking_quads(plan, rng))
-    return regions + [Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True, merge_m=_LINE_M) for q in quads]
+    return regions + [
+        Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True, merge_m=_LINE_M) for q in quads
+    ]
 
 
 def _block_regions(
