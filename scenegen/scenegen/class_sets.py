@@ -18,7 +18,7 @@ from scenegen.classes import CLASSES, Semantic
 
 CITYSCAPES_LABELS: Mapping[str, int] = MappingProxyType(
     {
-        "static": 4, "ground": 6, "road": 7, "sidewalk": 8, "building": 11, "wall": 12, "fence": 13,
+        "static": 4, "ground": 6, "road": 7, "sidewalk": 8, "building": 11, "fence": 13,
         "guard rail": 14, "bridge": 15, "pole": 17, "traffic light": 19, "traffic sign": 20, "vegetation": 21,
         "terrain": 22, "sky": 23, "person": 24, "car": 26, "truck": 27,
     }
