@@ -154,7 +154,7 @@ def _rails(skin: Skin) -> None:
         for a, b in pairwise(line):
             skin.tube(a, b, (0.008, 0.008), METAL, 3)
         for p in line[:-1]:
-            skin.tube(p - _at(0, 0, 0.6), p, (0.014, 0.014), METAL, 4)
+            skin.tube(p - _at(0.0, 0.0, 0.6), p, (0.014, 0.014), METAL, 4)
 
 
 def _motor(skin: Skin, running: bool) -> None:
@@ -193,8 +193,8 @@ def _outboard(skin: Skin, x: float) -> None:
 def _fishing(skin: Skin, running: bool) -> None:
     _cabin(skin, 1.1, 3.7, (1.25, 1.1), (1.35, 3.6), True)
     skin.box((-1.0, -0.8, 1.2), (0.7, 0.8, 1.75), ENGINE)
-    skin.site(ENGINE, _at(-0.15, 0.0, 1.77), _at(0, 0, 1.0))
-    skin.site(ENGINE, _at(-1.02, 0.0, 1.5), _at(-1.0, 0, 0))
+    skin.site(ENGINE, _at(-0.15, 0.0, 1.77), _at(0.0, 0.0, 1.0))
+    skin.site(ENGINE, _at(-1.02, 0.0, 1.5), _at(-1.0, 0.0, 0.0))
     skin.site(EXHAUST, _at(1.0, 0.75, 3.0), _at(-1.0, 0.3, 0.2), LUMP_STANDOFF_M)
     skin.tube(_at(0.95, 0.7, 1.7), _at(0.95, 0.7, 4.3), (0.09, 0.09), EXHAUST, 8)
     skin.around(METAL, (0.8, 0.0, 4.0))
@@ -206,6 +206,6 @@ def _fishing(skin: Skin, running: bool) -> None:
         skin.tube(_at(-5.2, side * 1.35, 1.1), _at(-5.2, side * 1.35, 3.0), (0.06, 0.06), METAL, 6)
     skin.tube(_at(-5.2, -1.35, 3.0), _at(-5.2, 1.35, 3.0), (0.06, 0.06), METAL, 6)
     for y in (-1.0, 1.0):
-        skin.site(SAIL, _at(-3.9, 0.0, 1.75) + 0.5 * _at(y, 0, 0.5), _at(y, 0.0, 0.5), LUMP_STANDOFF_M)
+        skin.site(SAIL, _at(-3.9, 0.0, 1.75) + 0.5 * _at(y, 0.0, 0.5), _at(y, 0.0, 0.5), LUMP_STANDOFF_M)
     skin.tube(_at(-3.9, -0.9, 1.6), _at(-3.9, 0.9, 1.6), (0.42, 0.42), SAIL, 10)
     skin.box((-2.6, -1.2, 1.15), (-1.6, 0.2, 1.5), DECK)
