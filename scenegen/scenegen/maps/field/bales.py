@@ -20,8 +20,8 @@ _PER_HECTARE = (6.0, 18.0)
 
 def build_bales(
     country: Country, taken: np.ndarray, half_m: float, shop: FieldWorkshop, rng: np.random.Generator
-) -> tuple[list[Part], int]:
-    """Bales along the swaths of hay meadows in and near the detailed square, and their number."""
+) -> tuple[list[Part], np.ndarray]:
+    """Bales along the swaths of hay meadows in and near the detailed square, and their plans."""
     room = shapely.box(-half_m, -half_m, half_m, half_m).buffer(60.0)
     rows = [np.zeros((0, 3))]
     for parcel in country.parcels:
@@ -41,13 +41,13 @@ def build_bales(
     table = table[keep]
     count = len(table)
     if not count:
-        return [], 0
+        return [], discs[keep]
     position = np.column_stack([table[:, :2], shop.relief(table[:, :2])])
     skin = shop.palette.variants("grass_dry")
     skins = np.array(skin)[rng.integers(len(skin), size=count)][:, None]
     owner = shop.builder.new_objects(count) + np.arange(count)
     size = rng.uniform(0.9, 1.1, (count, 1)) * np.ones(3)
-    return [place(bale(), position, table[:, 2], size, skins, owner)], count
+    return [place(bale(), position, table[:, 2], size, skins, owner)], discs[keep]
 
 
 def bale() -> Template:

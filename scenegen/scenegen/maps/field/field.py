@@ -13,6 +13,7 @@ from scenegen.maps.field.bales import build_bales
 from scenegen.maps.field.country import lay_out_country
 from scenegen.maps.field.crowd import build_crowd
 from scenegen.maps.field.equipment import build_equipment
+from scenegen.maps.field.greenery import build_greenery
 from scenegen.maps.field.grounds import lay_out_grounds
 from scenegen.maps.field.houses import plan_houses
 from scenegen.maps.field.knobs import FieldKnobs
@@ -45,9 +46,8 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
     rng : numpy.random.Generator
         The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
     """
-    own, plan, land_rng, hills, skins, homes, ground, walls, gear_rng, put_up, cars_rng, sit, far, go, hay = (
-        rng.spawn(15)
-    )
+    own, plan, land_rng, hills, skins, homes, ground, walls = rng.spawn(8)
+    gear_rng, put_up, cars_rng, sit, far, go, hay, green = rng.spawn(8)
     half = 0.5 * own.uniform(*knobs.extent_m)
     palette, builder = PaletteBuilder(skins), GeometryBuilder()
     for name, count in _VARIANTS:  # in a fixed order, before any part draws more of them
@@ -68,11 +68,13 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
     cars, car_plans = build_traffic(grounds, country, shop, cars_rng)
     taken = np.array([*shapely.points(equipment.feet), *car_plans, *footprints], dtype=object)
     people, people_count = build_crowd(grounds, equipment.seats, taken, shop, sit)
-    bales, bale_count = build_bales(
+    bales, bale_plans = build_bales(
         country, _occupied(taken, grounds.outline, country.corridor), half, shop, hay
     )
+    heads = [*shapely.points(equipment.feet), *car_plans, *footprints, *bale_plans]
+    plants, tree_count = build_greenery(grounds, country, np.array(heads, dtype=object), half, shop, green)
     distant, groves, farm_houses = far_objects(country, half, shop, far)
-    builder.add(*equipment.parts, *cars, *people, *bales, *distant)
+    builder.add(*equipment.parts, *cars, *people, *bales, *plants, *distant)
     movers = build_movers(grounds, country, half, shop, go)
     merged = builder.merge()
     inner = half - _MARGIN_M
@@ -94,7 +96,8 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
             ("cars", len(car_plans)),
             ("people", people_count),
             ("movers", len(movers)),
-            ("hay bales", bale_count),
+            ("hay bales", len(bale_plans)),
+            ("trees", tree_count),
             ("groves", groves),
         ),
         movers=movers,
