@@ -65,7 +65,13 @@ def test_a_wire_is_a_closed_tube_of_its_radius():
 def test_every_wire_has_its_own_id():
     start = np.array([[0, 0, 9], [0, 1, 9], [0, 2, 9]], np.float64)
     part = wires(
-        start, start + [30, 0, 0], np.full(3, 0.4), 0.008, 2, int(Semantic.WIRE), np.array([4, 5, 6])
+        start,
+        start + np.array([30, 0, 0]),
+        np.full(3, 0.4),
+        0.008,
+        2,
+        int(Semantic.WIRE),
+        np.array([4, 5, 6]),
     )
     assert [int((part.object == k).sum()) for k in (4, 5, 6)] == [48, 48, 48]
     for k in (4, 5, 6):

@@ -79,7 +79,7 @@ def test_standing_people_are_people_of_many_sizes(workshop, row):
         for k in np.unique(part.object):
             height[int(k)] = part.vertices[np.unique(part.faces[part.object == k]), 2].max()
     tall = np.array([height[k] for k in sorted(height)])
-    assert len(tall) == 200 and 0.95 < tall.min() and tall.max() < 2.0
+    assert len(tall) == 200 and tall.min() > 0.95 and tall.max() < 2.0
     assert 0.15 < (tall < 1.47).mean() < 0.35
     assert 1.66 < np.median(tall[tall > 1.47]) < 1.78
 

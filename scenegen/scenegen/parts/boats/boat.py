@@ -24,7 +24,7 @@ _SHAPES = {
     "motor": HullShape(6.4, 2.3, 0.35, (0.75, 0.8, 1.05), 0.9, 0.8, floor_m=0.2, decked=0.42),
     "fishing": HullShape(11.5, 3.8, 0.8, (1.1, 1.15, 2.1), 0.85, 0.7),
 }
-_HEIGHT_M = {"rowing": 0.75, "sailing": 12.6, "motor": 1.75, "fishing": 6.2}
+_HEIGHT_M = {"rowing": 0.75, "sailing": 12.6, "motor": 1.5, "fishing": 6.2}
 _RIG_M = 0.006
 """Radius of stays."""
 
