@@ -19,7 +19,7 @@ MAX_TRIANGLES = 10_000
 _SMALLEST_PX = 0.7
 """Movers that never look larger than that are left out."""
 _NEAR_M = 0.1
-"""Boxes that reach closer to the camera's plane are everywhere in the image."""
+"""What lies closer to the camera's plane is not looked for; flights keep further away."""
 _MARGIN_PX = 1.5
 """Around a box: sub-samples lie half a pixel off the centre, and rounding must never cost a ray."""
 
@@ -76,22 +76,40 @@ def around(
     corner = np.stack([company.box[:, pick, range(3)] for pick in _CORNERS], axis=1)
     move = company.poses(time_s)
     world = np.einsum("nij,nkj->nki", move[:, :3, :3], corner) + move[:, None, :3, 3]
-    x, y, z = np.moveaxis((world - pose[:3, 3]) @ pose[:3, :3], -1, 0)
-    ahead = z.max(axis=1) > 0.0
-    whole = ahead & (z.min(axis=1) < _NEAR_M)
-    depth = np.maximum(z, _NEAR_M)
+    local = (world - pose[:3, 3]) @ pose[:3, :3]
+    points, ahead = _before_the_camera(local)
+    place = points[..., :2] / points[..., 2:] * camera.focal_px + camera.centre_px
+    seen = ahead[..., None]
+    low = np.where(seen, place, np.inf).min(axis=1) - _MARGIN_PX
+    high = np.where(seen, place, -np.inf).max(axis=1) + _MARGIN_PX
     size = np.array([camera.width_px, camera.height_px])
-    place = np.stack([x, y], axis=-1) / depth[..., None] * camera.focal_px + camera.centre_px
-    low = np.where(whole[:, None], 0.0, place.min(axis=1) - _MARGIN_PX)
-    high = np.where(whole[:, None], size, place.max(axis=1) + _MARGIN_PX)
     first = np.clip(np.floor(low), 0, size).astype(np.int64)
     last = np.clip(np.ceil(high), 0, size).astype(np.int64)
-    for (left, top), (right, bottom) in zip(first[ahead].tolist(), last[ahead].tolist(), strict=True):
+    for (left, top), (right, bottom) in zip(first.tolist(), last.tolist(), strict=True):
         near[top:bottom, left:right] = True
     return near
 
 
 _CORNERS = np.array([[k >> 2 & 1, k >> 1 & 1, k & 1] for k in range(8)])
+_EDGES = np.array(
+    [[a, b] for a in range(8) for b in range(a) if np.abs(_CORNERS[a] - _CORNERS[b]).sum() == 1]
+)
+
+
+def _before_the_camera(
+    corner: Float64[np.ndarray, "movers 8 3"],
+) -> tuple[Float64[np.ndarray, "movers 20 3"], Bool[np.ndarray, "movers 20"]]:
+    """Corners of boxes, and where their edges cross the plane just before the camera; which of them exist."""
+    a, b = corner[:, _EDGES[:, 0]], corner[:, _EDGES[:, 1]]
+    rise = b[..., 2] - a[..., 2]
+    share = (_NEAR_M - a[..., 2]) / np.where(rise == 0.0, 1.0, rise)
+    crosses = (a[..., 2] < _NEAR_M) != (b[..., 2] < _NEAR_M)
+    cut = a + share[..., None] * (b - a)
+    cut[..., 2] = _NEAR_M
+    ahead = np.concatenate([corner[..., 2] >= _NEAR_M, crosses], axis=1)
+    points = np.concatenate([corner, cut], axis=1)
+    points[..., 2] = np.where(ahead, points[..., 2], 1.0)
+    return points, ahead
 
 
 def _in_view(
