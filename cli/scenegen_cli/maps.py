@@ -28,6 +28,10 @@ class Maps:
     """YAML file of recipe keys; flags win over it."""
     preview: Path | None = None
     """Draw the world into this PNG file: from above, from the air, and as a drone sees it."""
+    export: Path | None = None
+    """Write the world's triangles to this file (.glb, .gltf, .obj or .ply), for Blender and friends."""
+    nodes: str = "class"
+    """What becomes a node of the exported file: each class and material, or each object ('class' or 'object')."""
     json: bool = False
     """Report as JSON."""
 
@@ -39,7 +43,7 @@ def run(arguments: Sequence[str]) -> int:
         command = parse(Maps, "maps", own)
     except HelpShown:
         return 0
-    looks = command.preview is not None
+    looks = command.preview is not None or command.export is not None
     if not command.map:
         if looks:
             raise InputError("name the map to look at, such as 'scenegen maps city --preview city.png'")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from scenegen.climate.knobs import draw_season
+from scenegen.climate.season import Season
 from scenegen.exposure import Exposure
 from scenegen.foundation.rng import stream
 from scenegen.heat.solve import HeatModel
@@ -42,14 +43,19 @@ class Stage:
         self.loaded.release()
 
 
+def raise_world(recipe: Recipe, map: str, index: int) -> tuple[Season, World]:
+    """Season and geometry of world `index` of a map."""
+    season = draw_season(recipe.climate, stream(recipe.seed, map, index, "season"))
+    return season, build_world(map, recipe.map_knobs(map), season, stream(recipe.seed, map, index, "world"))
+
+
 def set_stage(recipe: Recipe, map: str, index: int, watch: Stopwatch) -> Stage:
     """Build world `index` of a map; a pure function of recipe, map and index.
 
     Season, geometry and exposure draw from generators of their own, so that changing one leaves the others alone.
     """
-    season = draw_season(recipe.climate, stream(recipe.seed, map, index, "season"))
     with watch("build"):
-        world = build_world(map, recipe.map_knobs(map), season, stream(recipe.seed, map, index, "world"))
+        season, world = raise_world(recipe, map, index)
     with watch("load"):
         loaded = load(world)
     with watch("expose"):

@@ -33,6 +33,7 @@ _BIRD_FOV_DEG = 40.0
 _BIRD_PITCH_DEG = 33.0
 _DRONE_FOV_DEG = 90.0
 _MARGIN = 1.06
+_HAZY_M = 1500.0  # larger worlds are seen from so far that a camera would see little but air
 _FLIGHT_FRAMES = 33
 _COUNTS_PER_K = 40.0
 
@@ -83,7 +84,9 @@ def photograph(stage: Stage, recipe: Recipe, map: str, index: int) -> tuple[Ther
     plan_m = 2.0 * _half_size_m(stage.world)
     return state, (
         studio.view("plan", f"{plan_m:.0f} m across, north up", _PLAN_FOV_DEG, plan_pose(stage.world), False),
-        studio.view("bird's eye", "from the south-west", _BIRD_FOV_DEG, bird_pose(stage.world), True),
+        studio.view(
+            "bird's eye", "from the south-west", _BIRD_FOV_DEG, bird_pose(stage.world), plan_m < _HAZY_M
+        ),
         studio.view("drone", words, _DRONE_FOV_DEG, pose, True),
     )
 

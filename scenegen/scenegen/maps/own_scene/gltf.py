@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from scenegen.foundation.errors import InputError
-from scenegen.maps.own_scene.limits import MAX_PIECES, MAX_VERTICES
+from scenegen.maps.own_scene.limits import MAX_FACES, MAX_PIECES, MAX_VERTICES
 from scenegen.maps.own_scene.raw import Names
 
 _MAGIC, _JSON, _BIN = 0x46546C67, 0x4E4F534A, 0x004E4942
@@ -167,7 +167,9 @@ def _accessor(accessors: list[dict[str, Any]], index: Any, shape: str) -> int:
         raise InputError(
             "stores its triangles as sparse or normalized numbers; export it without compression"
         )
-    if type(count) is not int or not 0 <= count <= MAX_VERTICES or accessor.get("type") != shape:
+    if type(count) is int and count > MAX_VERTICES:
+        raise InputError(f"has more than {MAX_FACES:,} triangles; decimate it or split it")
+    if type(count) is not int or count < 0 or accessor.get("type") != shape:
         raise InputError(
             f"has an array of {str(count)[:20]} {str(accessor.get('type'))[:20]} where triangles belong"
         )

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from scenegen.climate.season import Season
 from scenegen.foundation.errors import InputError
 from scenegen.geometry.builder import GeometryBuilder, MergedGeometry
 from scenegen.geometry.part import Part, face_areas, face_normals
+from scenegen.maps.own_scene.detail import Detail
 from scenegen.maps.own_scene.facets import smooth_facets
 from scenegen.maps.own_scene.identity import content_hash, sidecar_path
 from scenegen.maps.own_scene.knobs import OwnScene
@@ -32,10 +34,10 @@ FIRST_USER_MATERIAL = 1000
 """Material ids from here on are the user's: prescribed surfaces, by temperature, then emissivity."""
 
 SPACING_M = 2.5
-"""Longest edge of a triangle, hence distance of sites on a large surface."""
+"""Longest edge of a triangle where there is detail, hence distance of sites on a large surface [m]."""
 
 _MOST_CUT = 500_000
-"""Triangles that cutting may make, by estimate; a larger scene is cut more coarsely."""
+"""Triangles that cutting may add; a larger scene is cut more coarsely."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +109,7 @@ def build_own_scene(name: str, scene: OwnScene, season: Season, rng: np.random.G
         sites=merged.sites,
         palette=palette,
         ground=ground,
-        flight_box_m=_flight_box(vertices, ground, described.sidecar.flight_ceiling_m),
+        flight_box_m=_flight_box(vertices, ground, described.sidecar),
         counts=_counts(raw),
     )
 
@@ -159,8 +161,7 @@ def _merge(
     normal, area = face_normals(raw.vertices, raw.faces)
     group = owner[raw.part] * (int(part_surface.max()) + 1) + part_surface[raw.part]
     facet = smooth_facets(raw.faces, normal, group)
-    spacing = _spacing(raw.vertices, raw.faces, area)
-    vertices, faces, parent = subdivide(raw.vertices, raw.faces, spacing)
+    vertices, faces, parent, spacing = _cut(raw, Detail.of(raw.vertices, raw.faces, area, facet))
     skin = Skin(vertices, faces, normal[parent], face_areas(vertices, faces), facet[parent], group[parent])
     placed = place_sites(skin, spacing)
     part = raw.part[parent]
@@ -181,32 +182,47 @@ def _merge(
     return builder.merge()
 
 
-def _spacing(
-    vertices: Float64[np.ndarray, "vertices 3"],
-    faces: Int64[np.ndarray, "faces 3"],
-    area: Float64[np.ndarray, "faces"],
-) -> float:
-    """The finest spacing [m], from `SPACING_M` up, at which cutting makes no more triangles than it may."""
-    corners = vertices[faces]
-    edge = np.linalg.norm(corners[:, [1, 2, 0]] - corners, axis=2)
+def _cut(
+    raw: RawScene, detail: Detail
+) -> tuple[
+    Float64[np.ndarray, "vertices 3"], Int64[np.ndarray, "faces 3"], Int64[np.ndarray, "faces"], float
+]:
+    """Cut the triangles as finely as the budget allows: vertices, faces, the face each comes from, spacing [m]."""
+    most = len(raw.faces) + _MOST_CUT
+    for spacing, doubled_after in _fineness():
+        longest = partial(detail.longest_m, spacing_m=spacing, doubled_after_m=doubled_after)
+        cut = subdivide(raw.vertices, raw.faces, longest, most)
+        if cut is not None:
+            return *cut, spacing
+    raise AssertionError("edges of any length are never cut")
+
+
+def _fineness() -> Iterator[tuple[float, float]]:
+    """Spacing and distance that doubles it [m], from fine to coarse: the open ground gives way first."""
+    yield from ((SPACING_M, doubled_after) for doubled_after in (20.0, 5.0, 1.25))
     spacing = SPACING_M
     while True:
-        long = edge.max(axis=1) > spacing
-        # A cut edge ends between half the spacing and the spacing: pieces of about a quarter of its square.
-        if (area[long].sum() / (0.25 * spacing**2)) + (edge[long].sum() / (0.75 * spacing)) <= _MOST_CUT:
-            return spacing
-        spacing *= 1.2
+        yield spacing, 0.3
+        spacing *= 1.3
 
 
 def _flight_box(
-    vertices: Float64[np.ndarray, "vertices 3"], ground: HeightField, ceiling_m: float
+    vertices: Float64[np.ndarray, "vertices 3"], ground: HeightField, sidecar: Sidecar
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
-    """The sides of the scene, a little inwards, from its lowest ground up."""
+    """The sides of the scene, a little inwards, or those of the sidecar inside them; from the lowest ground up."""
     low, high = vertices[:, :2].min(axis=0), vertices[:, :2].max(axis=0)
     margin = np.minimum(5.0, 0.05 * (high - low))
-    floor = float(ground.height_m.min())
     (west, south), (east, north) = (low + margin).tolist(), (high - margin).tolist()
-    return (west, south, floor), (east, north, floor + ceiling_m)
+    if sidecar.flight_area_m is not None:
+        asked = sidecar.flight_area_m
+        west, south, east, north = (
+            max(west, asked[0]),
+            max(south, asked[1]),
+            min(east, asked[2]),
+            min(north, asked[3]),
+        )
+    floor = float(ground.height_m.min())
+    return (west, south, floor), (east, north, floor + sidecar.flight_ceiling_m)
 
 
 def _counts(raw: RawScene) -> tuple[tuple[str, int], ...]:
@@ -216,11 +232,7 @@ def _counts(raw: RawScene) -> tuple[tuple[str, int], ...]:
         if (east, north) != (0, 0)
         else ()
     )
-    return (("parts", len(raw.parts)), ("triangles in the file", _sound(raw)), *raw.repairs, *shift)
-
-
-def _sound(raw: RawScene) -> int:
-    return len(raw.faces)
+    return (("parts", len(raw.parts)), ("triangles in the file", len(raw.faces)), *raw.repairs, *shift)
 
 
 def part_triangles(raw: RawScene) -> Sequence[int]:

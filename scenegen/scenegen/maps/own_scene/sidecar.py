@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, ValidationError
+from pydantic import AfterValidator, BeforeValidator, Field, ValidationError
 from pydantic_core import ErrorDetails
 
 from scenegen.classes import CLASSES, Semantic
@@ -51,6 +51,15 @@ def _class(value: Any) -> Any:
     return names[value]
 
 
+def _area(value: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    west, south, east, north = value
+    if east - west < 1.0 or north - south < 1.0:
+        raise ValueError("takes west, south, east, north in metres, at least 1 m apart")
+    return value
+
+
+Area = Annotated[tuple[Number, Number, Number, Number], AfterValidator(_area)]
+
 Choice = Annotated[str | Prescribed, BeforeValidator(_choice)]
 """The name of a material, or a prescribed temperature and emissivity."""
 
@@ -72,6 +81,8 @@ class Sidecar(Section):
     """What all others are made of; without it, every part has to be named."""
     classes: dict[str, ClassName] = Field(default_factory=dict)
     """Which class each named part belongs to; by default that of its material."""
+    flight_area_m: Area | None = None
+    """Where flights stay: west, south, east, north [m], after `up_axis` and `unit_m`; by default the whole scene."""
     flight_ceiling_m: Annotated[Number, Field(ge=5.0, le=500.0)] = 120.0
     """Upper edge of the airspace above the lowest ground [m]; its sides are the scene's own."""
 

@@ -1,21 +1,34 @@
-"""Cutting large triangles, so that heat has places to live: every edge ends shorter than a given length.
+"""Cutting large triangles, so that heat has places to live.
 
-Edges are halved, and both triangles of an edge are cut at the same point: neighbours keep sharing vertices, and no ray
-slips through between them.
+Edges are halved until they are as short as they should be where they lie, or until the triangles on both sides are so
+small that cutting gains nothing: thin slivers stay long. Both triangles of an edge are cut at the same point, so that
+neighbours keep sharing vertices and no ray slips through between them.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from jaxtyping import Bool, Float64, Int64
 
-_MAX_ROUNDS = 24
+from scenegen.geometry.part import face_areas
+
+_MAX_ROUNDS = 40
+_SMALL = 0.25
+"""Area, in squares of the longest edge allowed, below which a triangle is not cut for its own sake."""
+
+Longest = Callable[[Float64[np.ndarray, "edges 3"]], Float64[np.ndarray, "edges"]]
+"""Longest edge allowed [m] at the middles of edges: a function of the place alone, so that neighbours agree."""
 
 
 def subdivide(
-    vertices: Float64[np.ndarray, "vertices 3"], faces: Int64[np.ndarray, "faces 3"], longest_m: float
-) -> tuple[Float64[np.ndarray, "more 3"], Int64[np.ndarray, "cut 3"], Int64[np.ndarray, "cut"]]:
-    """Halve edges until none is longer than `longest_m`.
+    vertices: Float64[np.ndarray, "vertices 3"],
+    faces: Int64[np.ndarray, "faces 3"],
+    longest: Longest,
+    most: int,
+) -> tuple[Float64[np.ndarray, "more 3"], Int64[np.ndarray, "cut 3"], Int64[np.ndarray, "cut"]] | None:
+    """Halve edges that are longer than allowed; None if that makes more than `most` faces.
 
     Returns
     -------
@@ -28,10 +41,14 @@ def subdivide(
     """
     parent = np.arange(len(faces))
     done_faces, done_parents = [], []
+    done = 0
     for _ in range(_MAX_ROUNDS):
         corners = vertices[faces]
         length = np.linalg.norm(corners[:, [1, 2, 0]] - corners, axis=2)
-        long = length > longest_m
+        middle = (corners[:, [1, 2, 0]] + corners) / 2
+        allowed = longest(middle.reshape(-1, 3)).reshape(-1, 3)
+        area = face_areas(vertices, faces)
+        long = _worth_it(faces, length > allowed, area[:, None] > _SMALL * allowed**2)
         active = long.any(axis=1)
         done_faces.append(faces[~active])
         done_parents.append(parent[~active])
@@ -39,6 +56,9 @@ def subdivide(
             break
         vertices, faces, pieces = _halve(vertices, faces[active], long[active])
         parent = parent[active][pieces]
+        done += int((~active).sum())
+        if done + len(faces) > most:
+            return None
     else:
         done_faces.append(faces)
         done_parents.append(parent)
@@ -47,14 +67,31 @@ def subdivide(
     return vertices, np.concatenate(done_faces)[order], parent[order]
 
 
+def _worth_it(
+    faces: Int64[np.ndarray, "faces 3"], long: Bool[np.ndarray, "faces 3"], large: Bool[np.ndarray, "faces 3"]
+) -> Bool[np.ndarray, "faces 3"]:
+    """Long edges with a large triangle on at least one side; both sides agree."""
+    code = _edge_codes(faces, int(faces.max(initial=0)) + 1)[long]
+    _, which = np.unique(code, return_inverse=True)
+    gains = np.bincount(which.ravel(), large[long]) > 0
+    worth = np.zeros_like(long)
+    worth[long] = gains[which.ravel()]
+    return worth
+
+
+def _edge_codes(faces: Int64[np.ndarray, "faces 3"], count: int) -> Int64[np.ndarray, "faces 3"]:
+    """One number for each edge, whichever way round; `count` vertices."""
+    ends = np.sort(np.stack([faces, faces[:, [1, 2, 0]]], axis=2), axis=2)
+    return np.asarray(ends[..., 0] * count + ends[..., 1])
+
+
 def _halve(
     vertices: Float64[np.ndarray, "vertices 3"],
     faces: Int64[np.ndarray, "faces 3"],
     long: Bool[np.ndarray, "faces 3"],
 ) -> tuple[Float64[np.ndarray, "more 3"], Int64[np.ndarray, "cut 3"], Int64[np.ndarray, "cut"]]:
     """Cut every long edge once; returns vertices, faces and the face each one comes from."""
-    ends = np.sort(np.stack([faces, faces[:, [1, 2, 0]]], axis=2), axis=2)
-    code = ends[..., 0] * len(vertices) + ends[..., 1]
+    code = _edge_codes(faces, len(vertices))
     cut, which = np.unique(code[long], return_inverse=True)
     middle = np.full(faces.shape, -1, np.int64)
     middle[long] = len(vertices) + which
