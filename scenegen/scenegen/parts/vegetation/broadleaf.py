@@ -1,4 +1,4 @@
-"""Recursive branching inside a crown outline: trunk, limbs, branches, twigs, and leaf cards on branches and twigs.
+"""Recursive branching inside a crown outline: trunk, limbs, branches, twigs, and leaf sprays on branches and twigs.
 
 The parameters are those of Weber and Penn 1995, "Creation and rendering of realistic trees" (SIGGRAPH, doi:
 10.1145/218380.218427): how many children of each order, their angles, lengths and curvature; lengths end at the
@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from scenegen.parts.vegetation.branches import GOLDEN_RAD, Branches, aside, sprout, unit
-from scenegen.parts.vegetation.cards import cards
+from scenegen.parts.vegetation.cards import FACES, SPRAY_AREA, middles, moved_by, sprays
 from scenegen.parts.vegetation.growth import NOTHING, Grown, Plan, merged
 from scenegen.parts.vegetation.outline import pull_inside, room, side_area
 from scenegen.parts.vegetation.species import Broadleaf
@@ -19,8 +19,8 @@ from scenegen.parts.vegetation.tubes import Mesh, tubes
 _FULL_FACES = 2400
 """Triangles for which the numbers of limbs, branches and twigs of a species are meant."""
 _FOOT = -0.03
-_HIDDEN_SHARE, _HIDDEN_AREA = 0.22, 2.6
-"""Share of the cards that fill the inside of a crown, and their area against the others: nobody sees their edges."""
+_HIDDEN_SHARE, _HIDDEN_AREA = 0.2, 1.7
+"""Share of the sprays that fill the inside of a crown, and their area against the others: nobody sees their edges."""
 _TWIG_RADIUS = (0.0016, 0.0006)
 
 
@@ -40,7 +40,7 @@ def grow(species: Broadleaf, plan: Plan, rng: np.random.Generator) -> Grown:
     left = plan.faces - len(body[1]) - len(boughs[1]) * (not bare)
     leaves = NOTHING
     if plan.in_leaf > 0.0:
-        leaves = _foliage(species, limbs, branches, twigs, max(left, 240) // 2, plan.in_leaf, rng)
+        leaves = _foliage(species, branches, twigs, max(left, 240) // FACES, plan.in_leaf, rng)
     return Grown(body, boughs, leaves)
 
 
@@ -142,37 +142,33 @@ def _coarse(branches: Branches, bare: bool) -> Branches:
 
 def _foliage(
     species: Broadleaf,
-    limbs: Branches,
     branches: Branches,
     twigs: Branches,
     count: int,
     in_leaf: float,
     rng: np.random.Generator,
 ) -> Mesh:
-    """Cards along twigs and branches, large hidden ones along limbs; falling foliage leaves twig by twig."""
+    """Sprays along twigs, and larger hidden ones along branches; falling foliage leaves twig by twig."""
     leaf, outline = species.leaves, species.outline
     hidden = int(_HIDDEN_SHARE * count)
     outer = count - hidden
-    area = leaf.cover * side_area(outline) / (outer + _HIDDEN_AREA * hidden)
     on_twig = np.arange(outer) % len(twigs.points)
-    t = rng.uniform(0.15, 1.05, outer) ** (1.0 - 0.8 * leaf.clumped)
+    t = rng.uniform(0.1, 1.05, outer) ** (1.0 - 0.8 * leaf.clumped)
     base, along, _ = twigs.at(on_twig, t)
-    inside = np.arange(hidden) % len(branches.points)
-    base_in, along_in, _ = branches.at(inside, rng.uniform(0.0, 0.7, hidden))
+    on_branch = np.arange(hidden) % len(branches.points)
+    base_in, along_in, _ = branches.at(on_branch, rng.uniform(0.0, 0.6, hidden))
     base, along = np.concatenate([base, base_in]), np.concatenate([along, along_in])
-    size = np.concatenate([np.full(outer, 1.0), np.full(hidden, _HIDDEN_AREA)])
-    size *= area * rng.uniform(0.6, 1.5, count)
-    # A rhombus has half the area of its rectangle.
-    length = np.sqrt(2.0 * size * leaf.slender)
+    size = np.concatenate([np.full(outer, 1.0), np.full(hidden, _HIDDEN_AREA)]) * rng.uniform(0.5, 1.5, count)
+    size *= leaf.cover * side_area(outline) / size.sum()
+    length = np.sqrt(size * leaf.slender / SPRAY_AREA)
+    outward = unit(base - np.array([0.0, 0.0, 0.5 * (outline.base + 1.0)]))
     spin = unit(rng.normal(size=(count, 3)))
-    middle = np.array([0.0, 0.0, 0.5 * (outline.base + 1.0)])
-    outward = unit(base - middle)
-    heading = unit(along + 0.8 * spin + 0.5 * outward + np.array([0.0, 0.0, -1.2 * leaf.droop]))
-    facing = unit(rng.normal(size=(count, 3))) * 0.8 + outward + np.array([0.0, 0.0, 0.6])
-    base = base - 0.35 * length[:, None] * heading
+    heading = unit(along + 0.8 * spin + 0.4 * outward + np.array([0.0, 0.0, -1.2 * leaf.droop]))
+    facing = 0.8 * unit(rng.normal(size=(count, 3))) + outward + np.array([0.0, 0.0, 0.6])
     if in_leaf < 1.0:
-        owner = np.concatenate([on_twig, inside])
+        owner = np.concatenate([on_twig, on_branch])
         keep = rng.uniform(size=len(twigs.points))[owner % len(twigs.points)] < in_leaf
         base, heading, facing, length = base[keep], heading[keep], facing[keep], length[keep]
-    vertices, faces = cards(base, heading, facing, length, length / leaf.slender)
-    return pull_inside(outline, vertices), faces
+    made = sprays(base - 0.3 * length[:, None] * heading, heading, facing, length, leaf.slender)
+    middle = middles(made)
+    return moved_by(made, pull_inside(outline, middle, 0.95) - middle)

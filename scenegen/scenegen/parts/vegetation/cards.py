@@ -1,4 +1,4 @@
-"""Leaf cards: folded rhombi that stand for a spray of leaves, seen from both sides."""
+"""Leaf sprays: two ragged triangles from one foot that stand for a twig's end with its leaves, seen from both sides."""
 
 from __future__ import annotations
 
@@ -8,38 +8,59 @@ from jaxtyping import Float64
 from scenegen.parts.vegetation.branches import across, unit
 from scenegen.parts.vegetation.tubes import Mesh
 
-_WIDEST = 0.45
-_FOLD = 0.35
+_STAR = np.array([[0.0, 0.0], [0.97, 0.20], [0.45, 0.58], [0.80, -0.42], [0.24, -0.55]])
+"""Corners of a spray of unit length, along and across: a notch in the middle, no two edges alike."""
+_FOLD = 0.4
+FACES = 2
+"""Triangles of a spray."""
+SPRAY_AREA = 0.5 * (
+    abs(_STAR[1, 0] * _STAR[2, 1] - _STAR[2, 0] * _STAR[1, 1])
+    + abs(_STAR[3, 0] * _STAR[4, 1] - _STAR[4, 0] * _STAR[3, 1])
+)
+"""Area of a spray of unit length and width, unfolded."""
 
 
-def cards(
-    base: Float64[np.ndarray, "cards 3"],
-    along: Float64[np.ndarray, "cards 3"],
-    facing: Float64[np.ndarray, "cards 3"],
-    length: Float64[np.ndarray, "cards"],
-    width: Float64[np.ndarray, "cards"],
+def sprays(
+    base: Float64[np.ndarray, "sprays 3"],
+    along: Float64[np.ndarray, "sprays 3"],
+    facing: Float64[np.ndarray, "sprays 3"],
+    length: Float64[np.ndarray, "sprays"],
+    slender: float,
 ) -> Mesh:
-    """Rhombi from `base` in direction `along`, folded along their midrib; two faces and four vertices each.
+    """Sprays from `base` in direction `along`; two faces and five vertices each, every other one mirrored.
 
     Parameters
     ----------
-    base, along : float64 (cards, 3)
-        Foot and direction of the midrib.
-    facing : float64 (cards, 3)
+    base, along : float64 (sprays, 3)
+        Foot and direction.
+    facing : float64 (sprays, 3)
         Where the upper side looks; made perpendicular to `along`.
-    length, width : float64 (cards,)
+    length : float64 (sprays,)
+    slender : float
+        Length over width.
     """
     along = unit(along)
     normal = facing - (facing * along).sum(axis=1, keepdims=True) * along
     flat = (normal**2).sum(axis=1, keepdims=True) < 1e-6
     normal = unit(np.where(flat, across(along), normal))
-    side = np.cross(normal, along)
-    half = 0.5 * width[:, None]
-    rib = base + _WIDEST * length[:, None] * along
-    fold = _FOLD * half * normal
-    corners = np.stack(
-        [base, rib - half * side - fold, base + length[:, None] * along, rib + half * side - fold], axis=1
+    hand = np.where(np.arange(len(base)) % 2 == 0, 1.0, -1.0)[:, None]
+    side = hand * np.cross(normal, along)
+    out, wide = _STAR[:, 0], _STAR[:, 1] / slender
+    corners = (
+        out[:, None] * along[:, None, :]
+        + wide[:, None] * side[:, None, :]
+        - _FOLD * np.abs(wide)[:, None] * normal[:, None, :]
     )
-    first = 4 * np.arange(len(base))[:, None]
-    faces = (first + np.array([0, 1, 2, 0, 2, 3])).reshape(-1, 3)
+    corners = base[:, None, :] + length[:, None, None] * corners
+    faces = (5 * np.arange(len(base))[:, None] + np.array([0, 1, 2, 0, 4, 3])).reshape(-1, 3)
     return corners.reshape(-1, 3), faces
+
+
+def moved_by(mesh: Mesh, shift: Float64[np.ndarray, "sprays 3"]) -> Mesh:
+    """Each spray moved as a whole."""
+    return mesh[0] + np.repeat(shift, 5, axis=0), mesh[1]
+
+
+def middles(mesh: Mesh) -> Float64[np.ndarray, "sprays 3"]:
+    """Middle of each spray."""
+    return np.asarray(mesh[0].reshape(-1, 5, 3).mean(axis=1))

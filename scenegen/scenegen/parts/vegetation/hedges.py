@@ -1,4 +1,4 @@
-"""Clipped hedges along lines: a dense body and leaf cards on its faces; they keep their leaves all year."""
+"""Clipped hedges along lines: a dense body and leaf sprays on its faces; they keep their leaves all year."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import LUMP_STANDOFF_M, Part
 from scenegen.geometry.template import Template, place
 from scenegen.parts.vegetation.branches import unit
-from scenegen.parts.vegetation.cards import cards
+from scenegen.parts.vegetation.cards import FACES, sprays
 from scenegen.parts.workshop import Workshop
 
 _PIECE_M = 1.7
 _FORMS = 3
-_CARDS = 44
+_SPRAYS = 54
 _FOOT = -0.05
-_BODY = 0.80
+_BODY = 0.70
 _TURN_SHARE = 0.35
 
 
@@ -78,27 +78,27 @@ def hedge_piece(rng: np.random.Generator) -> Template:
     left = model.site(np.array([0.5, 0.51, 0.55]), np.array([0.0, 1.0, 0.15]), LUMP_STANDOFF_M)
     right = model.site(np.array([0.5, -0.51, 0.55]), np.array([0.0, -1.0, 0.15]), LUMP_STANDOFF_M)
     _body(model, top, left, right)
-    side = rng.choice(3, _CARDS, p=[0.26, 0.37, 0.37])
-    along, rise = rng.uniform(0.0, 1.0, _CARDS), rng.uniform(0.05, 0.97, _CARDS)
-    out = 0.5 * _BODY * rng.uniform(0.8, 1.05, _CARDS)
-    spread = rng.uniform(-0.42, 0.42, _CARDS)
+    side = rng.choice(3, _SPRAYS, p=[0.26, 0.37, 0.37])
+    along, rise = rng.uniform(0.0, 1.0, _SPRAYS), rng.uniform(0.05, 0.97, _SPRAYS)
+    out = 0.5 * _BODY * rng.uniform(0.85, 1.15, _SPRAYS)
+    spread = rng.uniform(-0.40, 0.40, _SPRAYS)
     y = np.choose(side, [spread, out, -out])
-    z = np.where(side == 0, 0.93 + 0.03 * rng.uniform(size=_CARDS), 0.95 * rise)
-    facing = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.3], [0.0, -1.0, 0.3]])[side]
-    turn = unit(rng.normal(size=(_CARDS, 3)))
-    length = rng.uniform(0.16, 0.30, _CARDS)
-    vertices, faces = cards(
-        np.column_stack([along, y, z]), turn + 0.4 * facing, facing + 0.6 * turn[::-1], length, 0.7 * length
-    )
-    vertices = np.clip(vertices, [-0.03, -0.5, 0.01], [1.03, 0.5, 1.0])
-    site = np.repeat(np.array([top, left, right])[side], 2)
+    z = np.where(side == 0, 0.88 + 0.06 * rng.uniform(size=_SPRAYS), 0.92 * rise)
+    outward = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.25], [0.0, -1.0, 0.25]])[side]
+    spin = unit(rng.normal(size=(_SPRAYS, 3)))
+    length = rng.uniform(0.20, 0.36, _SPRAYS)
+    heading = unit(spin + 0.35 * outward)
+    base = np.column_stack([along, y, z]) - 0.35 * length[:, None] * heading
+    vertices, faces = sprays(base, heading, outward + 0.7 * np.roll(spin, 1, axis=0), length, 1.2)
+    vertices = np.clip(vertices, [-0.05, -0.5, 0.01], [1.05, 0.5, 1.0])
+    site = np.repeat(np.array([top, left, right])[side], FACES)
     model.mesh(vertices, faces, 0, Semantic.SHRUB, np.repeat(site[:, None], 3, axis=1))
     return model.finish()
 
 
 def _body(model: Modeller, top: int, left: int, right: int) -> None:
     """The dense inside, a box narrower at the top; its ends close the hedge."""
-    w, v, h = 0.5 * _BODY, 0.42 * _BODY, 0.95
+    w, v, h = 0.5 * _BODY, 0.42 * _BODY, 0.90
     low = np.array([[0, -w, _FOOT], [1, -w, _FOOT], [1, w, _FOOT], [0, w, _FOOT]], np.float64)
     high = np.array([[0, -v, h], [1, -v, h], [1, v, h], [0, v, h]], np.float64)
     quad = np.array([[4, 5, 6, 7], [2, 3, 7, 6], [0, 1, 5, 4], [3, 0, 4, 7], [1, 2, 6, 5]])

@@ -39,11 +39,14 @@ def room(
     return np.asarray(np.maximum(reached, 0.4 * step[0]))
 
 
-def pull_inside(outline: Outline, points: Float64[np.ndarray, "points 3"]) -> Float64[np.ndarray, "points 3"]:
-    """Points moved horizontally and down until they lie inside the outline."""
+def pull_inside(
+    outline: Outline, points: Float64[np.ndarray, "points 3"], share: float = 1.0
+) -> Float64[np.ndarray, "points 3"]:
+    """Points moved horizontally and down until they lie inside the outline, narrowed to a share of its width."""
     moved = points.copy()
     moved[:, 2] = np.clip(points[:, 2], outline.base, 0.995)
     reach = np.hypot(moved[:, 0], moved[:, 1])
-    share = np.minimum(half_width(outline, moved[:, 2]) / np.maximum(reach, 1e-9), 1.0)
-    moved[:, :2] *= share[:, None]
+    moved[:, :2] *= np.minimum(share * half_width(outline, moved[:, 2]) / np.maximum(reach, 1e-9), 1.0)[
+        :, None
+    ]
     return moved

@@ -18,11 +18,10 @@ from scenegen.parts.workshop import Workshop
 
 __all__ = ["SPECIES", "crown_radius_m", "hedges", "plant", "shrubs"]
 
-_CLASS_TOP_M = (7.0, 12.0)
-"""Trees up to the first height are small, above the second large: a spray of leaves has one size, so tall trees have
-more of them."""
-_FACES = (640, 1050, 1900)
-"""Triangles of small, middling and large trees."""
+_CLASS_TOP_M = (6.0, 9.5, 14.0)
+"""Upper ends of the size classes but the last: a spray of leaves has one size, so tall trees have more of them."""
+_FACES = (640, 1050, 1800, 3000)
+"""Triangles of a tree of each size class."""
 _COPIES_PER_FORM = (1, 10, 40)
 """From how many trees of one species and size there is a first, second and third form."""
 _WIDTH = (0.86, 1.0)
@@ -65,7 +64,8 @@ def plant(
         Its season decides how much foliage deciduous trees carry.
     rng : numpy.random.Generator
     detail : float
-        Scales the number of triangles: about 640, 1,050 or 1,900 for trees up to 7 m, up to 12 m and above.
+        Scales the number of triangles: 640, 1,050, 1,800 and 3,000 for trees up to 6, 9.5, 14 m
+        and above.
 
     Returns
     -------

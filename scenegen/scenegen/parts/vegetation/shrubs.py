@@ -1,4 +1,4 @@
-"""Shrubs: several stems from the ground under a dome of leaf cards; half of the kinds keep their leaves in winter."""
+"""Shrubs: several stems from the ground under a dome of leaf sprays; half of the kinds keep their leaves in winter."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import Part
 from scenegen.geometry.template import Template, place
 from scenegen.parts.vegetation.branches import GOLDEN_RAD, Branches, sprout, unit
-from scenegen.parts.vegetation.cards import cards
+from scenegen.parts.vegetation.cards import FACES, sprays
 from scenegen.parts.vegetation.foliage import leaf_fraction
 from scenegen.parts.vegetation.lumps import DOWN, UP, crown_sites, ring, supports, thrice, wood_sites
 from scenegen.parts.vegetation.tubes import tubes
@@ -19,7 +19,7 @@ from scenegen.parts.workshop import Workshop
 BARK, LEAVES = 0, 1
 """Surface slots of a shrub."""
 _FORMS = 4
-_CARDS, _STEMS, _SHOOTS = 74, 9, 3
+_SPRAYS, _STEMS, _SHOOTS = 84, 7, 4
 _FOOT = -0.06
 _BARE = 0.04
 _SITES = np.concatenate([UP, ring(4, 12.0), DOWN])
@@ -33,7 +33,7 @@ def shrubs(
     shop: Workshop,
     rng: np.random.Generator,
 ) -> list[Part]:
-    """Free-standing shrubs, each with its own instance id, about 170 triangles.
+    """Free-standing shrubs, each with its own instance id, about 190 triangles.
 
     Parameters
     ----------
@@ -92,9 +92,9 @@ def shrub(in_leaf: float, rng: np.random.Generator) -> Template:
     _fit(vertices, 1.0)
     first = supports(model, vertices.mean(axis=0)[None], UP)
     model.mesh(vertices, faces, BARK, Semantic.SHRUB, thrice(np.full(len(faces), first)))
-    leaves = _leaves(stems, in_leaf, rng)
+    leaves = _leaves(in_leaf, rng)
     first = supports(model, leaves[0], _SITES)
-    model.mesh(*leaves, LEAVES, Semantic.SHRUB, thrice(first + crown_sites(leaves, _SITES, rng, 2)))
+    model.mesh(*leaves, LEAVES, Semantic.SHRUB, thrice(first + crown_sites(leaves, _SITES, rng, FACES)))
     return model.finish()
 
 
@@ -118,23 +118,24 @@ def _shoots(stems: Branches, rng: np.random.Generator) -> Branches:
     return sprout(start, direction, length, (0.7 * thick, 0.2 * thick), 2, 0.0, 0.0, rng)
 
 
-def _leaves(
-    stems: Branches, in_leaf: float, rng: np.random.Generator
-) -> tuple[Float64[np.ndarray, "vertices 3"], np.ndarray]:
-    """Cards on a lumpy dome and inside it."""
-    count = max(12, round(in_leaf * _CARDS))
-    stem = np.arange(count) % _STEMS
-    end, along, _ = stems.at(stem, rng.uniform(0.25, 1.0, count) ** 0.6)
+def _leaves(in_leaf: float, rng: np.random.Generator) -> tuple[Float64[np.ndarray, "vertices 3"], np.ndarray]:
+    """Sprays on a lumpy dome and inside it."""
+    count = max(12, round(in_leaf * _SPRAYS))
+    rank = (np.arange(count) + rng.uniform(size=count)) / count
+    rise, turn = np.arcsin(rank**0.8), GOLDEN_RAD * np.arange(count)
+    shell = np.column_stack([np.cos(turn) * np.cos(rise), np.sin(turn) * np.cos(rise), np.sin(rise)])
+    lump = 0.86 + 0.14 * np.sin(3.0 * turn + rng.uniform(0, 6.3)) * np.cos(4.0 * rise + rng.uniform(0, 6.3))
+    deep = np.where(rng.uniform(size=count) < 0.25, 0.55, 1.0) * rng.uniform(0.8, 1.05, count)
+    base = shell * (lump * deep)[:, None] * np.array([0.40, 0.40, 0.72]) + np.array([0.0, 0.0, 0.14])
     spin = unit(rng.normal(size=(count, 3)))
-    base = end + spin * rng.uniform(0.02, 0.20, count)[:, None]
-    outward = unit(base - np.array([0.0, 0.0, 0.35]))
-    length = rng.uniform(0.22, 0.36, count)
-    facing = outward + 0.7 * unit(rng.normal(size=(count, 3)))
-    vertices, faces = cards(base, along + spin + 0.5 * outward, facing, length, length / 1.5)
+    length = rng.uniform(0.22, 0.40, count)
+    facing = shell + 0.7 * unit(rng.normal(size=(count, 3)))
+    heading = unit(0.9 * spin + 0.5 * shell + np.array([0.0, 0.0, 0.35]))
+    vertices, faces = sprays(base - 0.25 * length[:, None] * heading, heading, facing, length, 1.3)
     reach = np.abs(vertices[:, :2]).max()
     vertices[:, :2] *= 0.5 / reach
     low, high = vertices[:, 2].min(), vertices[:, 2].max()
-    vertices[:, 2] = 0.02 + 0.98 * (vertices[:, 2] - low) / (high - low)
+    vertices[:, 2] = 0.01 + 0.99 * (vertices[:, 2] - low) / (high - low)
     return vertices, faces
 
 

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+from jaxtyping import Int64
 
 from scenegen.classes import Semantic
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.template import Template
 from scenegen.parts.vegetation import broadleaf, palm, whorled
+from scenegen.parts.vegetation.cards import FACES
 from scenegen.parts.vegetation.growth import Grown, Plan
 from scenegen.parts.vegetation.lumps import (
     BARE,
     CROWN,
+    DOWN,
     crown_sites,
     ring,
     supports,
@@ -24,7 +27,8 @@ from scenegen.parts.vegetation.tubes import Mesh
 BARK, LEAVES = 0, 1
 """Surface slots of a tree."""
 _TRUNK_SIDES = ring(3, 0.0)
-_LIMB = np.array([[0.0, 0.0, 1.0]])
+_TRUNK_SITE_HEIGHT, _TRUNK_RING = 0.12, 5
+_CROWN_BASE_QUANTILE = 0.08
 
 
 def tree(species: Species, plan: Plan, rng: np.random.Generator) -> Template:
@@ -39,14 +43,14 @@ def tree(species: Species, plan: Plan, rng: np.random.Generator) -> Template:
     """
     grown = _sized(_grow(species, plan, rng), species.growth.outline.radius * rng.uniform(0.9, 1.0))
     model = Modeller()
-    _trunk(model, grown.trunk)
     if len(grown.leaves[1]):
-        _limbs_in_leaf(model, grown)
+        _wood_in_leaf(model, grown)
         first = supports(model, grown.leaves[0], CROWN)
-        together = 2 if isinstance(species.growth, Broadleaf) else 1
+        together = FACES if isinstance(species.growth, Broadleaf) else 1
         site = first + crown_sites(grown.leaves, CROWN, rng, together)
         model.mesh(*grown.leaves, LEAVES, Semantic.TREE, thrice(site))
     else:
+        model.mesh(*grown.trunk, BARK, Semantic.TREE, thrice(_trunk_sites(model, grown.trunk)))
         first = supports(model, grown.limbs[0], BARE)
         model.mesh(*grown.limbs, BARK, Semantic.TREE, thrice(first + wood_sites(grown.limbs, BARE)))
     return model.finish()
@@ -75,19 +79,20 @@ def _sized(grown: Grown, radius: float) -> Grown:
     return Grown(stretched(grown.trunk), stretched(grown.limbs), stretched(grown.leaves))
 
 
-def _trunk(model: Modeller, trunk: Mesh) -> None:
-    """Sites around the trunk, at breast height or a little above."""
+def _trunk_sites(model: Modeller, trunk: Mesh) -> Int64[np.ndarray, "faces"]:
+    """Add sites around the trunk below its crown; returns the one of each face."""
     vertices = trunk[0]
-    low = vertices[(vertices[:, 2] > 0.0) & (vertices[:, 2] < 0.35)]
-    first = supports(model, low if len(low) else vertices, _TRUNK_SIDES)
-    model.mesh(*trunk, BARK, Semantic.TREE, thrice(first + wood_sites(trunk, _TRUNK_SIDES)))
+    near = np.argsort(np.abs(vertices[:, 2] - _TRUNK_SITE_HEIGHT), kind="stable")[:_TRUNK_RING]
+    return supports(model, vertices[near], _TRUNK_SIDES) + wood_sites(trunk, _TRUNK_SIDES)
 
 
-def _limbs_in_leaf(model: Modeller, grown: Grown) -> None:
-    """One site in the middle of the crown, where leaves are all a branch sees."""
-    if not len(grown.limbs[1]):
-        return
-    vertices = grown.limbs[0]
-    middle = vertices[np.argmin(((vertices - vertices.mean(axis=0)) ** 2).sum(axis=1))]
-    first = supports(model, middle[None], _LIMB)
-    model.mesh(*grown.limbs, BARK, Semantic.TREE, thrice(np.full(len(grown.limbs[1]), first)))
+def _wood_in_leaf(model: Modeller, grown: Grown) -> None:
+    """The free trunk has sides; wood in the crown has one site: what is in the shade sees leaves, and ground below."""
+    crown_base = np.quantile(grown.leaves[0][:, 2], _CROWN_BASE_QUANTILE)
+    sides = _trunk_sites(model, grown.trunk)
+    wood = grown.limbs[0]
+    middle = wood[np.argmin(((wood - wood.mean(axis=0)) ** 2).sum(axis=1))]
+    shaded = supports(model, middle[None], DOWN)
+    high = grown.trunk[0][grown.trunk[1]][..., 2].mean(axis=1) > crown_base
+    model.mesh(*grown.trunk, BARK, Semantic.TREE, thrice(np.where(high, shaded, sides)))
+    model.mesh(*grown.limbs, BARK, Semantic.TREE, thrice(np.full(len(grown.limbs[1]), shaded)))

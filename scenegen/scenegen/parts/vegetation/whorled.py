@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from jaxtyping import Float64
 
 from scenegen.parts.vegetation.branches import Branches, sprout, unit
 from scenegen.parts.vegetation.growth import Grown, Plan
@@ -12,6 +13,7 @@ from scenegen.parts.vegetation.tubes import Mesh, tubes
 
 _FULL_FACES = 2400
 _FOOT = -0.03
+UPWARD = np.array([0.0, 0.0, 1.0])
 
 
 def grow(species: Whorled, plan: Plan, rng: np.random.Generator) -> Grown:
@@ -24,17 +26,10 @@ def grow(species: Whorled, plan: Plan, rng: np.random.Generator) -> Grown:
         (np.array([species.girth]), np.array([0.0012])), 5, 0.0, 0.004, rng,
     )  # fmt: skip
     boughs = _boughs(species, trunk, whorls, each, rng)
-    body, limbs = tubes(trunk, 5, True), tubes(boughs, 3, True)
-    sprays = int((plan.faces - len(body[1])) / len(boughs.points) - 9)
-    return Grown(body, _thin(limbs, boughs), _sprays(species, boughs, max(8, sprays), rng))
-
-
-def _thin(limbs: Mesh, boughs: Branches) -> Mesh:
-    """Only the bare inner part of each bough, as far as its first sprays: the rest is hidden in needles."""
-    per = len(limbs[1]) // len(boughs.points)
-    kept = limbs[1].reshape(len(boughs.points), per, 3)[:, :6].reshape(-1, 3)
-    used, index = np.unique(kept, return_inverse=True)
-    return limbs[0][used], index.reshape(-1, 3)
+    inner = Branches(boughs.points[:, :2], boughs.radius[:, :2])
+    body, limbs = tubes(trunk, 5, True), tubes(inner, 3, True)
+    left = plan.faces - len(body[1]) - len(limbs[1])
+    return Grown(body, limbs, _needles(species, boughs, whorls, left, rng))
 
 
 def _boughs(species: Whorled, trunk: Branches, whorls: int, each: int, rng: np.random.Generator) -> Branches:
@@ -56,52 +51,77 @@ def _boughs(species: Whorled, trunk: Branches, whorls: int, each: int, rng: np.r
     bow = species.sag * (1.0 - rank)[:, None] * (1.3 * s**3 - 1.6 * s**2)
     lift = np.tan(rise)[:, None] * s + bow
     points = start[:, None, :] + reach[:, None, None] * (
-        out[:, None, :] * s[:, None] + np.array([0.0, 0.0, 1.0]) * lift[..., None]
+        out[:, None, :] * s[:, None] + UPWARD * lift[..., None]
     )
     points[..., 2] = np.clip(points[..., 2], 0.012, 0.99)
     radius = np.minimum(0.35 * thick, 0.006)[:, None] * (1 - 0.85 * s)
     return Branches(points, radius)
 
 
-def _sprays(species: Whorled, boughs: Branches, each: int, rng: np.random.Generator) -> Mesh:
-    """Triangles in pairs along each bough, pointing out and forward, the ends hanging; and one at the tip."""
-    count, pairs = len(boughs.points), max(3, (each - 1) // 2)
-    bough = np.repeat(np.arange(count), 2 * pairs)
-    side = np.tile(np.repeat([1.0, -1.0], pairs), count)
-    rank = np.tile(np.tile((np.arange(pairs) + 0.4) / pairs, 2), count)
-    t = np.clip(0.12 + 0.86 * rank + rng.normal(0.0, 0.03, len(rank)), 0.0, 0.98)
-    base, along, _ = boughs.at(bough, t)
-    length = boughs.length()[bough]
-    level = unit(along * np.array([1.0, 1.0, 0.0]))
-    left = np.column_stack([-level[:, 1], level[:, 0], np.zeros(len(t))]) * side[:, None]
-    width = length * (0.52 - 0.36 * t) * rng.uniform(0.75, 1.25, len(t))
-    down = np.array([0.0, 0.0, -1.0])
-    hang = species.curtain + 0.25 * rng.uniform(size=len(t))
-    tip = base + width[:, None] * unit(left + 0.75 * along + hang[:, None] * down)
-    foot = 0.95 / pairs * length[:, None] * along
-    near, far = base - 0.55 * foot, base + 0.85 * foot
-    near[:, 2] -= 0.15 * width * hang
-    ends = _tips(boughs, rng)
-    corners = np.concatenate([np.stack([near, np.where(side[:, None] > 0, far, tip),
-                                        np.where(side[:, None] > 0, tip, far)], axis=1), ends])  # fmt: skip
+def _needles(species: Whorled, boughs: Branches, whorls: int, faces: int, rng: np.random.Generator) -> Mesh:
+    """Sprays beside each bough, curtains below it, one at its tip; and the leading shoot of the tree."""
+    pairs = max(2, (faces // len(boughs.points) - 1) // 3)
+    corners = np.concatenate(
+        [*(_beside(species, boughs, pairs, hand, rng) for hand in (1.0, -1.0)),
+         _below(species, boughs, pairs, (1.0 - species.outline.base) / whorls, rng), _tips(boughs, rng)]
+    )  # fmt: skip
     flat = corners.reshape(-1, 3)
-    reach = np.maximum(half_width(species.outline, flat[:, 2]), 0.004)
-    flat[:, :2] *= np.minimum(1.0, 1.06 * reach / np.maximum(np.hypot(*flat[:, :2].T), 1e-9))[:, None]
-    flat[:, 2] = np.maximum(flat[:, 2], 0.01)
+    flat[:, 2] = np.clip(flat[:, 2], 0.01, 0.995)
+    reach = np.maximum(1.05 * half_width(species.outline, flat[:, 2]), 0.012)
+    flat[:, :2] *= np.minimum(1.0, reach / np.maximum(np.hypot(*flat[:, :2].T), 1e-9))[:, None]
+    flat = np.concatenate([flat, _leader()])
     return flat, np.arange(len(flat)).reshape(-1, 3)
 
 
-def _tips(boughs: Branches, rng: np.random.Generator) -> np.ndarray:
-    """One narrow triangle at the end of each bough, and a leading shoot."""
-    base, along, _ = boughs.at(np.arange(len(boughs.points)), np.full(len(boughs.points), 0.72))
-    length = 0.42 * boughs.length()[:, None] * rng.uniform(0.8, 1.1, (len(base), 1))
+def _stations(
+    boughs: Branches, each: int, rng: np.random.Generator
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Place, direction, share of the length and length of the bough, for stations along every bough."""
+    bough = np.repeat(np.arange(len(boughs.points)), each)
+    rank = np.tile((np.arange(each) + 0.5) / each, len(boughs.points))
+    t = np.clip(0.08 + 0.86 * rank + rng.normal(0.0, 0.25 / each, len(rank)), 0.02, 0.96)
+    base, along, _ = boughs.at(bough, t)
+    return base, along, t, boughs.length()[bough]
+
+
+def _beside(
+    species: Whorled, boughs: Branches, each: int, hand: float, rng: np.random.Generator
+) -> Float64[np.ndarray, "sprays 3 3"]:
+    base, along, t, length = _stations(boughs, each, rng)
+    level = unit(along * np.array([1.0, 1.0, 0.0]))
+    side = hand * np.column_stack([-level[:, 1], level[:, 0], np.zeros(len(t))])
+    width = (length * (0.50 - 0.30 * t) + 0.012) * rng.uniform(0.7, 1.25, len(t))
+    hang = 0.5 * species.curtain * rng.uniform(0.6, 1.5, len(t))
+    tip = base + width[:, None] * unit(side + 0.8 * along - hang[:, None] * UPWARD)
+    half = (0.62 / each * length + 0.006)[:, None] * along
+    return np.stack([base - half, base + half, tip], axis=1)
+
+
+def _below(
+    species: Whorled, boughs: Branches, each: int, spacing: float, rng: np.random.Generator
+) -> Float64[np.ndarray, "sprays 3 3"]:
+    """Curtains, as long as whorls are apart: hanging in spruces, short in firs."""
+    base, along, t, length = _stations(boughs, each, rng)
+    drop = spacing * species.curtain * (1.1 - 0.5 * t) * rng.uniform(0.6, 1.5, len(t))
+    drop *= np.clip(1.5 - base[:, 2], 0.5, 1.0)
+    sway = 0.35 * rng.normal(size=base.shape) * np.array([1.0, 1.0, 0.0])
+    tip = base + drop[:, None] * (sway + 0.3 * along - UPWARD)
+    half = (0.8 / each * length + 0.004)[:, None] * along
+    return np.stack([base - half, base + half, tip], axis=1)
+
+
+def _tips(boughs: Branches, rng: np.random.Generator) -> Float64[np.ndarray, "boughs 3 3"]:
+    """A narrow triangle at the end of each bough."""
+    base, along, _ = boughs.at(np.arange(len(boughs.points)), np.full(len(boughs.points), 0.7))
+    length = 0.40 * boughs.length()[:, None] * rng.uniform(0.8, 1.15, (len(base), 1))
     across = np.column_stack([-along[:, 1], along[:, 0], np.zeros(len(base))])
-    tips = np.stack(
-        [base - 0.2 * length * across, base + 0.2 * length * across, base + length * along], axis=1
+    return np.stack(
+        [base - 0.28 * length * across, base + 0.28 * length * across, base + length * along], axis=1
     )
+
+
+def _leader() -> Float64[np.ndarray, "corners 3"]:
+    """The leading shoot, three triangles that end at the top of the tree."""
     turn = 2 * np.pi * np.arange(3) / 3
-    out = 0.012 * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(3)])
-    top = np.array([0.0, 0.0, 1.0])
-    low = np.array([0.0, 0.0, 0.93])
-    leader = np.stack([low + out, low + np.roll(out, -1, axis=0), np.broadcast_to(top, (3, 3))], axis=1)
-    return np.concatenate([tips, leader])
+    low = 0.012 * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(3)]) + 0.93 * UPWARD
+    return np.stack([low, np.roll(low, -1, axis=0), np.broadcast_to(UPWARD, (3, 3))], axis=1).reshape(-1, 3)
