@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region, drape
-from scenegen.geometry.part import Part
+from scenegen.geometry.part import Part, face_normals
 from scenegen.geometry.placement import along, clear_of, first_come, rectangles
 from scenegen.geometry.planar import triangulate
 from scenegen.geometry.scatter import contact_points, graded_points, hexagonal
@@ -26,6 +26,7 @@ _FINE_POINTS = 30_000
 """Points of the fine lattice, at most: where the shore is long, everything is a little coarser."""
 _CONTACT_M = 1.2
 _ROAD_END_M = 2200.0
+_CLEAR_M = 0.01
 _FOLD = 0.45
 """Sites rise by this share of what the highest face around them rises over their plane."""
 _COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "grass_watered")
@@ -62,18 +63,24 @@ def build_ground(
     half = shop.coast.half_m
     spacing = np.array([_CONTACT_M if r.hole else _FINE_M for r in regions])
     plan = triangulate([r.outline for r in regions], points, spacing, (1.1 * half, 0.1))
-    return _out_of_folds(drape(plan, regions, shop.relief))
+    return _above_skin(drape(plan, regions, shop.relief))
 
 
-def _out_of_folds(ground: Part) -> Part:
-    """Lift sites in folds of the ground, as at the foot of a dune: their rays start a little aside of the vertex, and
-    would start below the steeper side."""
+def _above_skin(ground: Part) -> Part:
+    """Lift sites clear of curved ground: on a crest they would lie just below the faces around them, and in a fold, as
+    at the foot of a dune, their rays, which start a little aside, would start below the steeper side."""
     corner = ground.corner_site.ravel()
-    middle = np.repeat(ground.vertices[ground.faces].mean(axis=1), 3, axis=0)
-    over = ((middle - ground.site_position[corner]) * ground.site_normal[corner]).sum(axis=1)
-    rise = np.zeros(len(ground.site_position))
-    np.maximum.at(rise, corner, np.minimum(over, 1.0))
-    return replace(ground, site_position=ground.site_position + _FOLD * rise[:, None] * ground.site_normal)
+    normal, _ = face_normals(ground.vertices, ground.faces)
+    first = ground.vertices[ground.faces[:, 0]]
+    middle = ground.vertices[ground.faces].mean(axis=1)
+    here, out = ground.site_position[ground.corner_site], ground.site_normal[ground.corner_site]
+    depth = ((first[:, None] - here) * normal[:, None]).sum(axis=2).ravel()
+    over = ((middle[:, None] - here) * out).sum(axis=2).ravel()
+    rise = np.zeros((2, len(ground.site_position)))
+    np.maximum.at(rise[0], corner, np.minimum(depth + _CLEAR_M, 0.5))
+    np.maximum.at(rise[1], corner, np.minimum(over, 1.0))
+    lift = rise[0] + _FOLD * rise[1]
+    return replace(ground, site_position=ground.site_position + lift[:, None] * ground.site_normal)
 
 
 class _Strips:
@@ -111,7 +118,7 @@ class _Strips:
         coast, s, pick = self.coast, self.s, self.shop.palette.pick
         wet, beach, brow, back = (c(s) for c in (coast.wet, coast.beach, coast.brow, coast.back))
         rocky = np.clip((coast.cliff(s) - 0.06) / 0.6, 0.0, 1.0)  # headlands taper out on the sand
-        core, everywhere = beach + (0.35 + 0.25 * np.sin(s / 5.3)) * (brow - beach), np.ones(len(s), bool)
+        core = beach + (0.35 + 0.25 * np.sin(s / 5.3)) * (brow - beach)
         top, base = core + rocky * (brow - core), core + rocky**0.7 * (self.foot - core)
         near = np.abs(s) < 1.5 * coast.half_m  # a thin strip far away would only cost triangles
         middle = beach + np.clip(0.45 + 0.2 * np.sin(s / 17.0) + 0.12 * np.sin(s / 6.1), 0.2, 0.8) * (

@@ -17,6 +17,8 @@ from scenegen.maps.coastline.boats import build_boats
 from scenegen.maps.coastline.cars import build_cars
 from scenegen.maps.coastline.folk import build_folk
 from scenegen.maps.coastline.gardens import build_gardens
+from scenegen.maps.coastline.greenery import build_greenery
+from scenegen.maps.coastline.horizon import build_horizon
 from scenegen.maps.coastline.houses import draw_houses
 from scenegen.maps.coastline.huts import build_huts, draw_huts, standing_height
 from scenegen.maps.coastline.layout import LIGHTHOUSE_YARD_M, Layout
@@ -72,7 +74,7 @@ def build_things(
         One for each subsystem.
     """
     house_rng, shell_rng, hut_rng, tower_rng, pier_rng, wall_rng, rock_rng, road_rng, life_rng = rngs
-    car_rng, boat_rng, folk_rng = life_rng.spawn(3)
+    car_rng, boat_rng, folk_rng, green_rng, far_rng = life_rng.spawn(5)
     houses = draw_houses(layout, shop, house_rng)
     lawns, fences = build_gardens(houses, layout, shop, house_rng)
     rows = draw_huts(shop, hut_rng)
@@ -87,10 +89,11 @@ def build_things(
     rocks, stones = build_rocks(rock, shop, rock_rng)
     boats, boat_count = build_boats(layout, sea, shop, boat_rng)
     folk, folk_count = build_folk(layout, rows, shop, folk_rng)
-    parts += [*fences, *roadside, *cars, *rocks, *boats, *folk]
+    green, grown = build_greenery(shop, green_rng)
+    parts += [*green, *build_horizon(rock, shop, far_rng), *fences, *roadside, *cars, *rocks, *boats, *folk]
     size = np.full(len(rows), 2.6), np.full(len(rows), 2.2)
     huts = shapely.buffer(rectangles(rows[:, :2], *size, rows[:, 2]), -0.05, join_style="mitre")
     holes = (*(b.footprint.buffer(-0.01, join_style="mitre") for b in houses), *huts)
     total = {"houses": len(houses), "huts": len(rows), "rocks": len(stones)} | counts
-    total |= {"cars": car_count, "boats": boat_count, "people": folk_count}
+    total |= {"cars": car_count, "boats": boat_count, "people": folk_count} | grown
     return Things(tuple(parts), holes, stones, tuple(lawns), tuple(total.items()))
