@@ -1,8 +1,8 @@
 """Draw docs/pictures/maps/*.webp: every map at noon, at dusk and before sunrise, with its depth.
 
-    python docs/gallery.py [--map city coastline] [--seed 3] [--out docs/pictures/maps]
+    python benchmarks/gallery.py [--map city coastline] [--seed 3] [--out docs/pictures/maps]
 
-One clear summer day in the middle latitudes, two places of two flights, a camera of 320 x 256 pixels with lens and noise.
+One clear summer day in the middle latitudes, two places of two flights, 320 x 256 pixels with lens and noise.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ def main() -> None:
     )
     parser.add_argument("--map", nargs="+", default=list(MAPS), choices=list(MAPS))
     parser.add_argument("--seed", type=int, default=3)
-    parser.add_argument("--out", type=Path, default=Path(__file__).parent / "pictures" / "maps")
+    parser.add_argument("--out", type=Path, default=Path(__file__).parents[1] / "docs" / "pictures" / "maps")
     asked = parser.parse_args()
     asked.out.mkdir(parents=True, exist_ok=True)
     for name in asked.map:
