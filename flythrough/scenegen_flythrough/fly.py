@@ -9,17 +9,21 @@ import numpy as np
 from jaxtyping import Bool, Float64
 
 from scenegen.foundation.errors import InputError, RejectedDrawError
+from scenegen.movers.clock import Clock
 from scenegen.world import World
 from scenegen_flythrough.airspace import Airspace
 from scenegen_flythrough.attitude import camera_poses
 from scenegen_flythrough.knobs import FlightKnobs
 from scenegen_flythrough.steering import Intent, fly_batch
+from scenegen_flythrough.traffic import keeps_clear
 from scenegen_flythrough.trajectory import Trajectory
 
 _BATCH = 32  # paths tried together
 _PROVEN_TOGETHER = 4
 _BATCHES_PER_INTENT = 4
 _VIEW_M = 40.0  # how much of the world must still lie ahead of every pose
+
+_FROM_ZERO = Clock()
 
 
 @dataclass
@@ -29,10 +33,16 @@ class _Rejections:
     outside: int = 0
     blocked: int = 0
     enclosed: int = 0
+    met: int = 0
 
 
 def fly(
-    world: World, knobs: FlightKnobs, frames: int, rng: np.random.Generator, airspace: Airspace
+    world: World,
+    knobs: FlightKnobs,
+    frames: int,
+    rng: np.random.Generator,
+    airspace: Airspace,
+    clock: Clock = _FROM_ZERO,
 ) -> Trajectory:
     """Draw a smooth collision-free flight.
 
@@ -49,12 +59,14 @@ def fly(
         This flight's own generator.
     airspace : Airspace
         Of the same world.
+    clock : Clock
+        World time of the clip: where the movers are meanwhile.
 
     Returns
     -------
     Trajectory
-        Its capsules of radius `knobs.clearance_m` between successive poses touch nothing, and at least one pose is
-        connected to the open sky, so that no pose lies inside anything.
+        Its capsules of radius `knobs.clearance_m` between successive poses touch nothing, no mover's box comes closer
+        either, and at least one pose is connected to the open sky, so that no pose lies inside anything.
 
     Raises
     ------
@@ -73,7 +85,7 @@ def fly(
         for batch_rng in batch_rngs[: math.ceil((knobs.max_draws - rejected) / _BATCH)]:
             left = min(_BATCH, knobs.max_draws - rejected)
             paths = fly_batch(airspace, room, knobs, intent, (_BATCH, frames + 2), batch_rng)[:left]
-            index = _first_proven(airspace, knobs, paths, why)
+            index = _first_proven(airspace, knobs, intent, paths, clock, why)
             if index is not None:
                 return _trajectory(airspace, knobs, intent, paths[index], rejected + index)
             rejected += left
@@ -95,7 +107,12 @@ def _between(span: tuple[float, float], share: float) -> float:
 
 
 def _first_proven(
-    airspace: Airspace, knobs: FlightKnobs, paths: Float64[np.ndarray, "batch poses 3"], why: _Rejections
+    airspace: Airspace,
+    knobs: FlightKnobs,
+    intent: Intent,
+    paths: Float64[np.ndarray, "batch poses 3"],
+    clock: Clock,
+    why: _Rejections,
 ) -> int | None:
     """Index of the first path that holds everything, as if they had been tried one after the other."""
     inside = _inside(airspace, knobs, paths)
@@ -106,9 +123,18 @@ def _first_proven(
         free = _free(airspace, knobs, paths[group])
         why.blocked += int((~free).sum())
         for index in group[free].tolist():
-            if airspace.open_to_sky(paths[index, ::8], knobs.clearance_m).any():
+            if not airspace.open_to_sky(paths[index, ::8], knobs.clearance_m).any():
+                why.enclosed += 1
+            elif not keeps_clear(
+                airspace.world.movers,
+                clock,
+                paths[index],
+                _times(paths.shape[1], knobs, intent),
+                knobs.clearance_m,
+            ):
+                why.met += 1
+            else:
                 return int(index)
-            why.enclosed += 1
     return None
 
 
@@ -140,6 +166,11 @@ def _free(
     return np.asarray(~touches.reshape(len(paths), -1).any(axis=1))
 
 
+def _times(poses: int, knobs: FlightKnobs, intent: Intent) -> Float64[np.ndarray, "poses"]:
+    """Clip time of each pose, zero at the second."""
+    return (np.arange(poses) - 1.0) * (knobs.spacing_m / intent.speed_mps)
+
+
 def _trajectory(
     airspace: Airspace,
     knobs: FlightKnobs,
@@ -150,7 +181,7 @@ def _trajectory(
     closest = airspace.proximity.sweep(path[:-1], path[1:]).distance_m
     return Trajectory(
         world_from_camera=camera_poses(path, intent.speed_mps, knobs.bank_deg, intent.mount_pitch_deg),
-        time_s=(np.arange(len(path)) - 1.0) * (knobs.spacing_m / intent.speed_mps),
+        time_s=_times(len(path), knobs, intent),
         speed_mps=intent.speed_mps,
         clearance_m=float(closest.min()),
         rejected=rejected,
@@ -161,7 +192,7 @@ def _given_up(world: World, knobs: FlightKnobs, frames: int, why: _Rejections) -
     length = math.ceil((frames + 1) * knobs.spacing_m)
     reasons = (
         f"{why.outside} left the flight box or the height range, {why.blocked} came closer than clearance_m "
-        f"{knobs.clearance_m:g}, {why.enclosed} had no open sky"
+        f"{knobs.clearance_m:g}, {why.met} would have met something that moves, {why.enclosed} had no open sky"
     )
     return (
         f"no free flight of {length} m in this {world.map} world after {knobs.max_draws} draws ({reasons}); "

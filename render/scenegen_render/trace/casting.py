@@ -51,7 +51,7 @@ def choose(
     if not len(movers):
         return ()
     company = Company.of(movers)
-    middle = company.places(times_s)[..., :3]
+    middle = company.poses_over(times_s)[..., :3, 3]
     middle[..., 2] += company.box[:, :, 2].mean(axis=1)
     # Boxes need not be centred on the origin, and they pitch and roll: a little more than half the diagonal.
     radius = 0.55 * np.linalg.norm(np.ptp(company.box, axis=1), axis=1) + 0.2

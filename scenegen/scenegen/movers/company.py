@@ -11,7 +11,7 @@ from jaxtyping import Float64, Int64
 from scenegen.geometry.part import Part, concatenate
 from scenegen.movers.gait import Walkers
 from scenegen.movers.mover import Mover
-from scenegen.movers.route import HEADING, TRAVELLED, Timetable, Z, matrices
+from scenegen.movers.route import TRAVELLED, Timetable, matrices
 
 _NOTHING = np.zeros(0, np.int64)
 _NOBODY = Part(
@@ -91,9 +91,9 @@ class Company:
         """`world_from_mover` of all at one time."""
         return matrices(self.timetable.at(time_s))
 
-    def places(self, times_s: Float64[np.ndarray, "times"]) -> Float64[np.ndarray, "times movers 4"]:
-        """Places [m] and headings [rad] at several times."""
-        return np.stack([self.timetable.at(float(t))[:, [0, 1, Z, HEADING]] for t in times_s])
+    def poses_over(self, times_s: Float64[np.ndarray, "times"]) -> Float64[np.ndarray, "times movers 4 4"]:
+        """The same at several times."""
+        return matrices(self.timetable.over(times_s))
 
     def vertices(self, time_s: float) -> Float64[np.ndarray, "vertices 3"]:
         """World positions of all vertices at one time [m]."""

@@ -104,26 +104,31 @@ class Timetable:
         )
 
     def at(self, time_s: float) -> Float64[np.ndarray, "routes 7"]:
-        """State of every route at one time, cubic between rows (Catmull and Rom 1974): smooth in the velocity."""
-        steps = (time_s + self.start_s) / self.step_s
+        """State of every route at one time."""
+        return np.asarray(self.over(np.array([time_s]))[0])
+
+    def over(self, times_s: Float64[np.ndarray, "times"]) -> Float64[np.ndarray, "times routes 7"]:
+        """States at several times, cubic between rows (Catmull and Rom 1974): smooth in the velocity."""
+        steps = (times_s[:, None] + self.start_s) / self.step_s
         rounds = np.floor(steps / self.count)
         inside = steps - rounds * self.count
         k = np.minimum(inside.astype(np.int64), self.count - 1)
-        f = (inside - k)[:, None]
+        f = (inside - k)[..., None]
         a, b, c, d = (self.rows[self.first + k + n] for n in range(4))
         bend = f * (2.0 * a - 5.0 * b + 4.0 * c - d + f * (3.0 * (b - c) + d - a))
         state = b + 0.5 * f * (c - a + bend)
-        state[:, TRAVELLED] += rounds * self.round_m
+        state[..., TRAVELLED] += rounds * self.round_m
         return np.asarray(state)
 
 
-def matrices(state: Float64[np.ndarray, "routes 7"]) -> Float64[np.ndarray, "routes 4 4"]:
+def matrices(state: Float64[np.ndarray, "*many 7"]) -> Float64[np.ndarray, "*many 4 4"]:
     """`world_from_mover` of states: roll about the mover's own x (left side up), pitch (nose up), then heading."""
-    (ch, cp, cr), (sh, sp, sr) = (f(state[:, HEADING : ROLL + 1].T) for f in (np.cos, np.sin))
-    pose = np.zeros((len(state), 4, 4))
-    pose[:, 0, :3] = np.stack([ch * cp, -sh * cr - ch * sp * sr, sh * sr - ch * sp * cr], axis=1)
-    pose[:, 1, :3] = np.stack([sh * cp, ch * cr - sh * sp * sr, -ch * sr - sh * sp * cr], axis=1)
-    pose[:, 2, :3] = np.stack([sp, cp * sr, cp * cr], axis=1)
-    pose[:, :3, 3] = state[:, : Z + 1]
-    pose[:, 3, 3] = 1.0
+    angles = np.moveaxis(state[..., HEADING : ROLL + 1], -1, 0)
+    (ch, cp, cr), (sh, sp, sr) = np.cos(angles), np.sin(angles)
+    pose = np.zeros((*state.shape[:-1], 4, 4))
+    pose[..., 0, :3] = np.stack([ch * cp, -sh * cr - ch * sp * sr, sh * sr - ch * sp * cr], axis=-1)
+    pose[..., 1, :3] = np.stack([sh * cp, ch * cr - sh * sp * sr, -ch * sr - sh * sp * cr], axis=-1)
+    pose[..., 2, :3] = np.stack([sp, cp * sr, cp * cr], axis=-1)
+    pose[..., :3, 3] = state[..., : Z + 1]
+    pose[..., 3, 3] = 1.0
     return pose
