@@ -11,7 +11,7 @@ from scenegen.maps.coastline.pier import WIDTH_M
 from scenegen.maps.coastline.workshop import CoastWorkshop
 from scenegen.parts.people.stand import stand
 
-_ROOM_M = 0.45
+_ROOM_M, _APART_M = 0.62, 1.7
 _POSTURES = ("standing", "walking", "running")
 
 
@@ -33,13 +33,16 @@ def build_folk(
     sand = _on_sand(3 * wanted, shop, rng)
     before = huts[:, :2] + 2.6 * np.column_stack([np.cos(huts[:, 2]), np.sin(huts[:, 2])])
     before = before + rng.uniform(-0.6, 0.6, before.shape)
-    bays = shapely.get_coordinates(layout.car_park.centroid) + rng.normal(0.0, 1.2, (3, 2))
+    bays = shapely.get_coordinates(layout.car_park.centroid) + np.array(
+        [[-1.3, 0.3], [0.2, -0.4], [1.5, 0.5]]
+    )
     spots = np.concatenate([before[rng.uniform(size=len(before)) < 0.4], sand])
     free = shop.coast.inside(spots, 3.0) & (shop.relief(spots) > 0.05)
     free[free] = shop.claims.take(shapely.buffer(shapely.points(spots[free]), _ROOM_M), 0.15)
     spots = np.concatenate([bays, spots[free]])[: max(wanted - len(on_pier), 0)]
     ground = np.concatenate([np.column_stack([spots, shop.relief(spots)]), on_pier])
-    posture = rng.choice(len(_POSTURES), len(ground), p=(0.6, 0.33, 0.07))
+    posture = rng.choice(len(_POSTURES), len(ground), p=(0.6, 0.33, 0.07))  # on the pier they stand
+    posture[len(spots) :] = 0
     heading = rng.uniform(0.0, 2 * np.pi, len(ground))
     parts = []
     for k, name in enumerate(_POSTURES):
@@ -53,8 +56,8 @@ def _on_pier(layout: Layout, wanted: int, rng: np.random.Generator) -> np.ndarra
     start, end = layout.pier
     length = float(np.linalg.norm(end - start))
     ahead = (end - start) / length
-    cell = rng.permutation(int((length - 6.0) / 1.4))[:wanted]
-    mark = 3.0 + 1.4 * cell + rng.uniform(-0.2, 0.2, len(cell))
+    cell = rng.permutation(int((length - 6.0) / _APART_M))[:wanted]
+    mark = 3.0 + _APART_M * cell + rng.uniform(-0.2, 0.2, len(cell))
     side = rng.uniform(-0.18, 0.18, len(cell)) * WIDTH_M
     xy = start + mark[:, None] * ahead + side[:, None] * np.array([ahead[1], -ahead[0]])
     return np.column_stack([xy, np.full(len(xy), layout.pier_deck_m)])

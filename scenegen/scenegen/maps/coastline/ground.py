@@ -109,6 +109,8 @@ class _Strips:
         a, b = self.line(low), self.line(high)
         cuts = np.flatnonzero(np.diff(np.concatenate([[False], where, [False]]).astype(int)))
         rings = [np.concatenate([a[i:j], b[i:j][::-1]]) for i, j in cuts.reshape(-1, 2) if j - i > 1]
+        if not rings:
+            return []
         clipped = shapely.intersection(shapely.polygons([shapely.linearrings(r) for r in rings]), self.edge)
         parts = shapely.get_parts(clipped)
         return [p for p in parts if p.geom_type == "Polygon" and p.area > 1.0]

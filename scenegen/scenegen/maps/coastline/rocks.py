@@ -32,7 +32,7 @@ def build_rocks(rock: str, shop: CoastWorkshop, rng: np.random.Generator) -> tup
     ground = shop.relief(xy)
     radius = np.linalg.norm(scale[:, :2], axis=1) / np.sqrt(2)
     bounds = shapely.buffer(shapely.points(xy), _PLAN * scale[:, :2].max(axis=1), quad_segs=4)
-    good = shop.coast.inside(xy, 6.0) & (ground + 0.85 * scale[:, 2] > 0.25)
+    good = shop.coast.inside(xy, 6.0) & (ground + 0.4 * scale[:, 2] > 0.1)
     good[good] = shop.claims.take(bounds[good], 0.3)
     xy, scale, ground, radius = xy[good], scale[good], ground[good], radius[good]
     count = len(xy)
