@@ -72,8 +72,10 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
         country, _occupied(taken, grounds.outline, country.corridor), half, shop, hay
     )
     heads = [*shapely.points(equipment.feet), *car_plans, *footprints, *bale_plans]
-    plants, tree_count = build_greenery(grounds, country, np.array(heads, dtype=object), half, shop, green)
-    distant, groves, farm_houses = far_objects(country, half, shop, far)
+    plants, tree_count, masses = build_greenery(
+        grounds, country, np.array(heads, dtype=object), half, shop, green
+    )
+    distant, groves, farm_houses = far_objects(country, masses, half, shop, far)
     builder.add(*equipment.parts, *cars, *people, *bales, *plants, *distant)
     movers = build_movers(grounds, country, half, shop, go)
     merged = builder.merge()

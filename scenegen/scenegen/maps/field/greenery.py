@@ -20,7 +20,10 @@ _BROAD = ("oak", "lime", "birch", "poplar")
 _WOODS = (("oak", "birch", "lime"), ("spruce", "pine"), ("oak", "birch", "spruce", "pine"))
 _TALL_M = {"oak": (9.0, 17.0), "lime": (8.0, 15.0), "birch": (8.0, 15.0), "poplar": (14.0, 24.0)}
 _WOOD_TALL_M = (10.0, 18.0)
-_MOST_TREES = 520
+_LEAF_BUDGET = 270_000
+"""Triangles that trees may have; the farthest trees go first."""
+_HEDGES_M = 1600.0
+"""Metres of hedge; nearest first, since each has sixty triangles."""
 _NEAR_SHARE, _NEAR_DETAIL, _FAR_DETAIL = 0.62, 0.8, 0.4
 """Trees further out than this share of the half side have fewer triangles."""
 
@@ -42,8 +45,10 @@ def build_greenery(
     half_m: float,
     shop: FieldWorkshop,
     rng: np.random.Generator,
-) -> tuple[list[Part], int]:
-    """All plants near enough to be flown through, and the number of trees.
+) -> tuple[list[Part], int, np.ndarray]:
+    """All plants near enough to be flown through, the number of trees, and places where plainer ones will do.
+
+    The last are x, y, diameter and height of masses of trees (places, 4) beyond the budget.
 
     Parameters
     ----------
@@ -65,7 +70,7 @@ def build_greenery(
         _singles(country, half_m, shop, rng),
         _woods(country, square, rng),
     ]
-    xy, species, height = _free(wanted, np.array([*obstacles, *paved], dtype=object))
+    xy, species, height, rest = _free(wanted, np.array([*obstacles, *paved], dtype=object), half_m)
     parts: list[Part] = []
     position = np.column_stack([xy, shop.relief(xy)])
     near = np.linalg.norm(xy, axis=1) < _NEAR_SHARE * half_m
@@ -77,10 +82,10 @@ def build_greenery(
             if mine.any():
                 parts += plant(str(name), position[mine], height[mine], shop, rng, detail)
     trunks = shapely.buffer(shapely.points(xy), 0.8)
-    hedge_lines = [h for line in hedge_lines for h in _cut(line, [*trunks, *obstacles])]
-    parts += hedges(hedge_lines, float(rng.uniform(1.3, 2.6)), float(rng.uniform(1.0, 1.6)), shop, rng)
+    lines = [h for line in _nearest(hedge_lines) for h in _cut(line, [*trunks, *obstacles])]
+    parts += hedges(lines, float(rng.uniform(1.3, 2.6)), float(rng.uniform(1.0, 1.6)), shop, rng)
     parts += _bushes(grounds, country, np.array([*obstacles, *paved, *trunks], dtype=object), shop, rng)
-    return parts, len(xy)
+    return parts, len(xy), rest
 
 
 def _paved(grounds: Grounds, country: Country) -> list[shapely.Geometry]:
@@ -163,8 +168,10 @@ def _woods(country: Country, square: shapely.Polygon, rng: np.random.Generator) 
     return _Spots(xy, species, rng.uniform(*_WOOD_TALL_M, len(xy)), 0.45)
 
 
-def _free(wanted: list[_Spots], obstacles: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Trees that keep clear of obstacles and earlier trees; the farthest go where there are too many."""
+def _free(
+    wanted: list[_Spots], obstacles: np.ndarray, half_m: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Trees that keep clear of obstacles and earlier trees; where there are too many, the farthest become masses."""
     xy = np.concatenate([s.xy for s in wanted])
     species = np.concatenate([s.species.astype("U8") for s in wanted])
     height = np.concatenate([s.height_m for s in wanted])
@@ -178,8 +185,14 @@ def _free(wanted: list[_Spots], obstacles: np.ndarray) -> tuple[np.ndarray, np.n
     index = np.flatnonzero(keep)
     keep[index] = first_come(shapely.buffer(points[index], (spread * radius)[index], quad_segs=4))
     index = np.flatnonzero(keep)
-    index = np.sort(index[np.argsort(np.linalg.norm(xy[index], axis=1), kind="stable")[:_MOST_TREES]])
-    return xy[index], species[index], height[index]
+    reach = np.linalg.norm(xy, axis=1)
+    index = index[np.argsort(reach[index], kind="stable")]
+    detail = np.where(reach[index] < _NEAR_SHARE * half_m, _NEAR_DETAIL, _FAR_DETAIL)
+    faces = detail * np.array([640, 1050, 1900])[np.searchsorted((7.0, 12.0), height[index])]
+    paid = np.cumsum(faces) < _LEAF_BUDGET
+    rest, index = index[~paid], np.sort(index[paid])
+    masses = np.column_stack([xy[rest], 1.1 * height[rest], height[rest]])
+    return xy[index], species[index], height[index], masses
 
 
 def _boundaries(
@@ -202,6 +215,13 @@ def _boundaries(
             if piece.geom_type == "LineString" and piece.length > 12.0:
                 found[int(drawn[1] > 0.55)].append(piece)
     return found
+
+
+def _nearest(lines: list[shapely.LineString]) -> list[shapely.LineString]:
+    """The lines nearest to the origin, as many as the budget allows."""
+    order = np.argsort([line.distance(shapely.Point(0.0, 0.0)) for line in lines], kind="stable")
+    length = np.cumsum([lines[k].length for k in order])
+    return [lines[k] for k in order[length < _HEDGES_M]]
 
 
 def _cut(line: shapely.LineString, obstacles: list[shapely.Geometry]) -> list[np.ndarray]:

@@ -20,21 +20,41 @@ from scenegen.maps.field.workshop import FieldWorkshop
 _WALLS = ("stucco_render", "brick_red", "stucco_render", "wood_siding")
 _ROOFS = ("clay_roof_tile", "clay_roof_tile", "slate_roof", "metal_roof_painted_mid")
 _FINE_M = 750.0
+_BEYOND_M, _EDGE_M = 42.0, 160.0
+_SUNK = 8e-4
+"""How deep masses of trees stand in the relief per metre of distance: the mesh of the ground is coarse there."""
 _LEVELS_M = (0.0, 450.0, 700.0, 1100.0, 1700.0, 1e9)
 
 
 def far_objects(
-    country: Country, half_m: float, shop: FieldWorkshop, rng: np.random.Generator
+    country: Country, nearer: np.ndarray, half_m: float, shop: FieldWorkshop, rng: np.random.Generator
 ) -> tuple[list[Part], int, int]:
-    """Woods, tree lines and farms outside the detailed square; the numbers of groves and of farm buildings."""
-    near = shapely.box(-half_m, -half_m, half_m, half_m).buffer(4.0)
+    """Woods, tree lines and farms outside the detailed square.
+
+    Parameters
+    ----------
+    country : Country
+    nearer : float64 (places, 4)
+        x, y, diameter, height of masses of trees inside the square.
+    half_m : float
+        Half the side of the detailed square.
+    shop : FieldWorkshop
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    parts : list of Part
+    groves, houses : int
+        Numbers of masses of trees and of farm buildings.
+    """
+    near = shapely.box(-half_m, -half_m, half_m, half_m).buffer(_BEYOND_M, join_style="mitre")
     houses, plan = _farms(country, near, shop, rng)
     spots = np.concatenate([_woods(country, rng), _lines(country, shop, rng)])
     crowns = shapely.buffer(shapely.points(spots[:, :2]), 0.33 * spots[:, 2], quad_segs=3)
     taken = np.array([near, country.carriageway.buffer(1.0), country.corridor, *plan], dtype=object)
-    keep = clear_of(crowns, taken, 1.0) & (np.abs(spots[:, :2]).max(axis=1) < FAR_M - 40.0)
-    keep[np.flatnonzero(keep)] = first_come(crowns[keep])
-    spots = spots[keep]
+    keep = clear_of(crowns, taken, 1.0) & (np.abs(spots[:, :2]).max(axis=1) < FAR_M - _EDGE_M)
+    spots = np.concatenate([nearer, spots[keep]])
+    spots = spots[first_come(shapely.buffer(shapely.points(spots[:, :2]), 0.33 * spots[:, 2], quad_segs=3))]
     return [*_groves(spots, shop, rng), *houses], len(spots), len(plan)
 
 
@@ -83,7 +103,8 @@ def _groves(spots: np.ndarray, shop: FieldWorkshop, rng: np.random.Generator) ->
     """Masses of trees, finer ones nearby."""
     leaves = np.array(shop.palette.variants("tree_crown"))
     skin = leaves[rng.integers(len(leaves), size=len(spots))][:, None]
-    position = np.column_stack([spots[:, :2], shop.relief(spots[:, :2])])
+    sunk = _SUNK * np.linalg.norm(spots[:, :2], axis=1)
+    position = np.column_stack([spots[:, :2], shop.relief(spots[:, :2]) - sunk])
     scale, heading = spots[:, [2, 2, 3]], rng.uniform(0.0, 2 * np.pi, len(spots))
     owner = shop.builder.new_objects(len(spots)) + np.arange(len(spots))
     near = np.linalg.norm(spots[:, :2], axis=1) < _FINE_M

@@ -19,7 +19,7 @@ HEIGHT_M = 38.0
 CORRIDOR_M = 13.0
 """Half the width of the strip that is kept free of trees."""
 
-_BASE_M, _WAIST_M, _WAIST_Z, _FOOT_M = 3.1, 0.85, 20.0, 0.4
+_BASE_M, _WAIST_M, _WAIST_Z, _FOOT_M = 3.1, 0.85, 20.0, 1.8
 _ARMS = ((21.0, 6.2), (26.5, 7.6), (32.0, 5.4))
 """Height and reach of the cross-arms [m]."""
 
