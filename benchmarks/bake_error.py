@@ -7,7 +7,7 @@ into what comes through the temperatures (sky view, neighbours) and through the 
 Bias of the bounce: baked irradiance, interpolated where pixel centres meet matt surfaces, against 4,096 bounce rays
 from that very place that meet the same warm surfaces; what the difference does to the radiance, in mK.
 
-    python benchmarks/bake_error.py [--directions 64 128] [--hits 1500]
+    python benchmarks/bake_error.py [--directions 64 128] [--hits 1500] [--bias-only]
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ import argparse
 from dataclasses import dataclass
 
 import numpy as np
-from places import BAND_UM, HFOV_DEG, city, machine
+from places import BAND_UM, HFOV_DEG, machine, of_map
 
+from scenegen.classes import Semantic
 from scenegen.climate.season import Season
 from scenegen.climate.weather import Weather
 from scenegen.exposure import sky_bin_sin_elevation
@@ -119,6 +120,41 @@ def between_corners(values: np.ndarray, corner: np.ndarray, uv: np.ndarray) -> n
     return np.einsum("pk,pk...->p...", weight, values[corner])
 
 
+def normals_at(loaded: LoadedWorld, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
+    """Unit normals (places, 3) of the facets met; in crowns those of the sites, since leaves stand for a volume."""
+    world = loaded.world
+    smooth = between_corners(world.sites.normal.astype(np.float64), world.corner_site[face], uv)
+    a, b, c = (world.mesh.vertices[world.mesh.faces[face][:, k]].astype(np.float64) for k in range(3))
+    leaf = np.isin(world.face_semantic[face], (int(Semantic.TREE), int(Semantic.SHRUB)))
+    normal = np.where(leaf[:, None], smooth, np.cross(b - a, c - a))
+    return (normal / np.linalg.norm(normal, axis=1, keepdims=True)).astype(np.float32)
+
+
+def told(error: np.ndarray) -> str:
+    """Median, rms and 99th percentile of errors [mK]."""
+    size = np.abs(error)
+    return (
+        f"median {np.median(size):.1f} (bar 20), rms {np.sqrt(np.mean(error**2)):.1f} (bar 40), "
+        f"p99 {np.percentile(size, 99):.0f} (bar 300), mean {error.mean():+.1f}"
+    )
+
+
+def worst_groups(loaded: LoadedWorld, face: np.ndarray, error: np.ndarray, count: int = 6) -> list[str]:
+    """Which classes and materials carry the squared error."""
+    world = loaded.world
+    pairs = np.column_stack([world.face_semantic[face], world.face_surface[face]])
+    names = np.array(
+        [f"{Semantic(int(s)).name.lower()}, {world.palette[int(p)].material.name}" for s, p in pairs]
+    )
+    kinds, which = np.unique(names, return_inverse=True)
+    total = np.bincount(which, error**2)
+    many = np.bincount(which)
+    return [
+        f"{total[k] / total.sum():4.0%} {kinds[k]}: {many[k]} places, rms {np.sqrt(total[k] / many[k]):.0f}"
+        for k in np.argsort(-total)[:count]
+    ]
+
+
 def bounced(loaded: LoadedWorld, lighting: Lighting, face: np.ndarray, uv: np.ndarray) -> np.ndarray:
     """Mean radiance [W m^-2 sr^-1] over 4,096 cosine-distributed rays from each place."""
     mi, dr = backend.modules()
@@ -132,8 +168,7 @@ def bounced(loaded: LoadedWorld, lighting: Lighting, face: np.ndarray, uv: np.nd
     above = sky_radiance(sine, lighting.state.atmosphere, BAND_UM)
     glow, sky = backend.upload(leaving.astype(np.float32)), backend.upload(above.astype(np.float32))
     point = between_corners(world.mesh.vertices.astype(np.float64), world.mesh.faces[face], uv)
-    normal = between_corners(world.sites.normal.astype(np.float64), world.corner_site[face], uv)
-    normal = (normal / np.linalg.norm(normal, axis=1, keepdims=True)).astype(np.float32)
+    normal = normals_at(loaded, face, uv)
     turn = stream(0, "bounces").random(len(face), dtype=np.float32)
     first, second = tangents(normal, turn)
     local = cosine_directions(BOUNCES).astype(np.float32)
@@ -162,10 +197,11 @@ def bounce_bias(loaded: LoadedWorld, camera: Camera, poses: list, lighting: Ligh
     baked = between_corners(lighting.irradiance.astype(np.float64) / np.pi, world.corner_site[face], uv)
     eps = np.array([s.emissivity for s in world.palette])[world.face_surface[face]]
     error = (1 - eps) * (baked - bounced(loaded, lighting, face, uv)) / SLOPE * 1e3
-    size = np.abs(error)
-    print(f"  baked bounce against {BOUNCES:,} rays at {len(face):,} places [mK]:", end=" ")
-    print(f"median {np.median(size):.1f} (bar 20), rms {np.sqrt(np.mean(error**2)):.1f} (bar 40),", end=" ")
-    print(f"p99 {np.percentile(size, 99):.0f} (bar 300), mean {error.mean():+.1f}")
+    leaf = np.isin(world.face_semantic[face], (int(Semantic.TREE), int(Semantic.SHRUB)))
+    print(f"  baked bounce against {BOUNCES:,} rays at {len(face):,} places [mK]: {told(error)}")
+    print(f"    without crowns, {np.count_nonzero(~leaf):,} places: {told(error[~leaf])}")
+    for line in worst_groups(loaded, face, error):
+        print(f"    {line}")
 
 
 def main() -> None:
@@ -174,8 +210,9 @@ def main() -> None:
     )
     parser.add_argument("--directions", type=int, nargs="+", default=[ExposureKnobs().directions])
     parser.add_argument("--hits", type=int, default=1500)
+    parser.add_argument("--bias-only", action="store_true", help="leave out the random part")
     asked = parser.parse_args()
-    place = city()
+    place = of_map("city")
     camera = Camera.from_fov(256, 256, HFOV_DEG)
     tracer = Tracer(camera, RenderKnobs())
     print(machine())
@@ -183,7 +220,11 @@ def main() -> None:
         print(
             f"{directions} directions, {len(place.loaded.world.sites.area):,} sites, {len(place.poses)} poses"
         )
-        first = random_part(tracer, place.loaded, place.poses, ExposureKnobs(directions=directions))
+        knobs = ExposureKnobs(directions=directions)
+        if asked.bias_only:
+            first = lightings(place.loaded, 1, knobs)
+        else:
+            first = random_part(tracer, place.loaded, place.poses, knobs)
         for hour in (4.0, 14.0):
             bounce_bias(place.loaded, camera, place.poses, first[hour], asked.hits)
 

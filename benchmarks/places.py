@@ -1,4 +1,4 @@
-"""Where the rendering benchmarks take place: a generated city with real flights, or a quick city of plain boxes."""
+"""Where the rendering benchmarks take place: a generated world with real flights, or a quick city of plain boxes."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import platform
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from scenegen.climate.season import Season
 from scenegen.climate.weather import Weather
 from scenegen.foundation.rng import stream
 from scenegen.heat.solve import HeatModel
-from scenegen.maps.registry import build_world, map_family
+from scenegen.maps.registry import MAPS, build_world, map_family
 from scenegen.materials.material import Surface
 from scenegen.materials.table import material
 from scenegen.radiometry.atmosphere import Atmosphere
@@ -55,9 +56,9 @@ class Place:
     poses: list[tuple[np.ndarray, np.ndarray]]
 
 
-def city() -> Place:
-    """World 0 of the city map on a July afternoon, twelve poses from four default flights."""
-    world = build_world("city", map_family("city").knobs(), SEASON, stream(0, "benchmark", "world"))
+def of_map(name: str) -> Place:
+    """World 0 of a map on a July afternoon, twelve poses from four default flights."""
+    world = build_world(name, map_family(name).knobs(), SEASON, stream(0, "benchmark", "world"))
     loaded, airspace = load(world), Airspace(world)
     exposure = expose(loaded, SEASON, stream(0, "benchmark", "exposure"))
     state = HeatModel.of(world, exposure).solve(_AFTERNOON, 15.0)
@@ -66,7 +67,7 @@ def city() -> Place:
         for k in range(4)
     ]
     poses = [(path[k], path[k + 1]) for path in flights for k in (2, 8, 14)]
-    return Place("city", loaded, state, bake(loaded, exposure, state, BAND_UM), poses)
+    return Place(name, loaded, state, bake(loaded, exposure, state, BAND_UM), poses)
 
 
 def boxes() -> Place:
@@ -92,7 +93,7 @@ def boxes() -> Place:
     return Place("boxes", load(world), state, np.full(len(world.sites.area), 120.0, np.float32), poses)
 
 
-PLACES: dict[str, Callable[[], Place]] = {"city": city, "boxes": boxes}
+PLACES: dict[str, Callable[[], Place]] = {name: partial(of_map, name) for name in MAPS} | {"boxes": boxes}
 
 
 def chosen(about: str | None) -> Place:
