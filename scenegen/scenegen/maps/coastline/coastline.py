@@ -9,6 +9,7 @@ from scenegen.climate.season import Season
 from scenegen.geometry.builder import GeometryBuilder
 from scenegen.maps.coastline.claims import Claims
 from scenegen.maps.coastline.ground import build_ground
+from scenegen.maps.coastline.horizon import build_horizon
 from scenegen.maps.coastline.journeys import depart, plan_journeys
 from scenegen.maps.coastline.knobs import CoastlineKnobs
 from scenegen.maps.coastline.layout import lay_out
@@ -36,7 +37,7 @@ def build_coastline(knobs: CoastlineKnobs, season: Season, rng: np.random.Genera
     rng : numpy.random.Generator
         The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
     """
-    shape, land, lots, water, ground, skins, grass, moving, *others = rng.spawn(17)
+    shape, land, lots, water, ground, skins, grass, moving, far, *others = rng.spawn(18)
     coast = draw_coast(knobs, shape)
     palette, builder = PaletteBuilder(skins), GeometryBuilder()
     palette.variants("asphalt_aged", 3)  # the fourth is its paint
@@ -48,7 +49,8 @@ def build_coastline(knobs: CoastlineKnobs, season: Season, rng: np.random.Genera
     plan = plan_journeys(layout, shop, moving)
     things = build_things(layout, rock, sea, shop, others)
     land_part = build_ground(layout, things, rock, sea.temperature_K, shop, ground)
-    builder.add(land_part, build_sea(sea, shop), *things.parts, *build_marram(land_part, shop, grass))
+    builder.add(land_part, build_sea(sea, shop), *things.parts)
+    builder.add(*build_marram(land_part, shop, grass), *build_horizon(rock, land_part, shop, far))
     movers = depart(plan, layout, sea, shop, moving)
     merged = builder.merge()
     half = coast.half_m - _MARGIN_M

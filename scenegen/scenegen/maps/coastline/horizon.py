@@ -16,18 +16,46 @@ from scenegen.maps.coastline.workshop import CoastWorkshop
 
 _NEAREST_M, _REACH_M = 30.0, 4200.0
 _GROVES, _FARMS = 420, 150
-_ROOTED_M = 2.5
+_ROOTED_M = 3.0
 
 
-def build_horizon(rock: str, shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:
-    """Everything beyond the detailed square but ground and sea."""
+def build_horizon(rock: str, ground: Part, shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:
+    """Everything beyond the detailed square but ground and sea.
+
+    Parameters
+    ----------
+    rock : str
+        Material of this coast's rock.
+    ground : Part
+        Its triangles are large out there: things stand on them, not on the relief.
+    shop : CoastWorkshop
+    rng : numpy.random.Generator
+    """
     land_rng, islet_rng = rng.spawn(2)
     xy, built, size, heading = _spots(shop, land_rng)
+    height, found = _surface(ground, xy, shop.coast.half_m)
+    farm, wood = built & found, ~built & found
+    foot = np.column_stack([xy, height])
     return [
-        _farms(xy[built], size[built], heading[built], shop, land_rng),
-        _groves(xy[~built], size[~built], shop, land_rng),
+        _farms(foot[farm], size[farm], heading[farm], shop, land_rng),
+        _groves(foot[wood], size[wood], shop, land_rng),
         *_islets(rock, shop, islet_rng),
     ]
+
+
+def _surface(ground: Part, xy: np.ndarray, half_m: float) -> tuple[np.ndarray, np.ndarray]:
+    """Height [m] of the ground's triangles beyond the detailed square at plan points, and where there is one."""
+    corners = ground.vertices[ground.faces]
+    corners = corners[np.abs(corners[..., :2]).max(axis=(1, 2)) > half_m]
+    point, face = shapely.STRtree(shapely.polygons(corners[..., :2])).query(
+        shapely.points(xy), predicate="within"
+    )
+    a, b, c = (corners[face, k] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    aside = ((xy[point] - a[:, :2]) * normal[:, :2]).sum(axis=1)
+    height, found = np.zeros(len(xy)), np.zeros(len(xy), bool)
+    height[point], found[point] = a[:, 2] - aside / normal[:, 2], True
+    return height, found
 
 
 def _spots(
@@ -50,29 +78,28 @@ def _spots(
 
 
 def _farms(
-    xy: np.ndarray, size: np.ndarray, heading: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator
+    foot: np.ndarray, size: np.ndarray, heading: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator
 ) -> Part:
     walls = [*shop.palette.variants("stucco_render"), *shop.palette.variants("brick_red")]
     roofs = shop.palette.variants("clay_roof_tile")
     wood, glass = shop.palette.variants("timber_weathered"), shop.palette.variants("window_glass")
     skins = np.array(
-        [[k[int(rng.integers(len(k)))] for k in (walls, roofs, wood, glass)] for _ in range(len(xy))],
+        [[k[int(rng.integers(len(k)))] for k in (walls, roofs, wood, glass)] for _ in range(len(foot))],
         np.int64,
     ).reshape(-1, 4)
-    owner = shop.builder.new_objects(len(xy)) + np.arange(len(xy))
+    owner = shop.builder.new_objects(len(foot)) + np.arange(len(foot))
     scale = size[:, None] * np.array([1.0, 1.0, 0.75])
-    position = np.column_stack([xy, shop.relief(xy) + 0.4])
-    return place(hut(), position, heading, scale, skins, owner)
+    return place(hut(), foot, heading, scale, skins, owner)
 
 
-def _groves(xy: np.ndarray, size: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator) -> Part:
+def _groves(foot: np.ndarray, size: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator) -> Part:
     leaves = np.array(shop.palette.variants("tree_crown"), np.int64)
-    skins = leaves[rng.integers(len(leaves), size=len(xy))][:, None]
-    owner = shop.builder.new_objects(len(xy)) + np.arange(len(xy))
-    tall = rng.uniform(7.0, 13.0, len(xy))
-    position = np.column_stack([xy, shop.relief(xy) - _ROOTED_M])
+    skins = leaves[rng.integers(len(leaves), size=len(foot))][:, None]
+    owner = shop.builder.new_objects(len(foot)) + np.arange(len(foot))
+    tall = rng.uniform(7.0, 13.0, len(foot))
+    position = foot - np.array([0.0, 0.0, _ROOTED_M])
     scale = np.column_stack([size, size, tall + _ROOTED_M])
-    return place(grove(rng), position, rng.uniform(0.0, 2 * np.pi, len(xy)), scale, skins, owner)
+    return place(grove(rng), position, rng.uniform(0.0, 2 * np.pi, len(foot)), scale, skins, owner)
 
 
 def _islets(rock: str, shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:

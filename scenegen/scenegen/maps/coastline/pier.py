@@ -18,7 +18,8 @@ WIDTH_M, HEAD_M = 3.6, (10.0, 9.0)
 """Width of the deck; length and width of the head [m]."""
 
 _BAY_M, _PLANK_M, _GAP_M = 5.0, 0.24, 0.025
-_PILE_M = 14.0
+_DRIVEN_M = 1.6
+"""How far piles reach below the sea bed."""
 
 
 def bay(length_m: float, width_m: float, sides: tuple[bool, bool, bool]) -> Template:
@@ -49,20 +50,28 @@ def bay(length_m: float, width_m: float, sides: tuple[bool, bool, bool]) -> Temp
         model.quads(np.concatenate([lower, upper])[None], TIMBER, Semantic.PIER)
     for y in (-0.8 * half, 0.0, 0.8 * half):
         model.box((0.0, y - 0.08, -0.45), (length_m, y + 0.08, low), TIMBER, Semantic.PIER, covered=True)
-    _bent(model, 0.5 * _BAY_M, half)
+    _cap(model, 0.5 * _BAY_M, half)
     _railing(model, length_m, half, sides)
     return model.finish()
 
 
-def _bent(model: Modeller, x: float, half: float) -> None:
-    """Two piles, the cap between them, and a cross of braces."""
-    piles = np.array([[x, -0.8 * half, 0.0], [x, 0.8 * half, 0.0]])
-    up = np.array([0.0, 0.0, 1.0])
-    for foot in piles:
-        model.tube(foot - _PILE_M * up, foot - 0.4 * up, 0.17, 0.15, TIMBER, Semantic.PIER, sides=8, sites=3)
+def _cap(model: Modeller, x: float, half: float) -> None:
+    """The beam across a pair of piles, and a cross of braces below it."""
     model.box((x - 0.13, -half, -0.7), (x + 0.13, half, -0.45), TIMBER, Semantic.PIER)
-    for a, b in ((piles[0], piles[1]), (piles[1], piles[0])):
-        model.tube(a - 2.4 * up, b - 0.7 * up, 0.06, 0.06, TIMBER, Semantic.PIER, sides=4)
+    high, low = 0.8 * half * np.array([0.0, 1.0, 0.0]), np.array([x, 0.0, 0.0])
+    up = np.array([0.0, 0.0, 1.0])
+    for side in (-1.0, 1.0):
+        ends = low - side * high - 2.4 * up, low + side * high - 0.7 * up
+        model.tube(*ends, 0.06, 0.06, TIMBER, Semantic.PIER, sides=4)
+
+
+def piles(width_m: float) -> Template:
+    """A pair of piles from z = -1 up to the deck at z = 0; scale it to its length. Slots as of a bay."""
+    model = Modeller()
+    for y in (-0.4 * width_m, 0.4 * width_m):
+        foot, top = np.array([0.0, y, -1.0]), np.array([0.0, y, -0.02])
+        model.tube(foot, top, 0.17, 0.15, TIMBER, Semantic.PIER, sides=8, sites=3)
+    return model.finish()
 
 
 def _railing(model: Modeller, length_m: float, half: float, sides: tuple[bool, bool, bool]) -> None:
@@ -85,7 +94,7 @@ def _railing(model: Modeller, length_m: float, half: float, sides: tuple[bool, b
 
 
 def build_pier(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:
-    """The world's pier, one instance; piles end below the sea bed."""
+    """The world's pier, one instance; its piles stand in the sea bed."""
     start, end = layout.pier
     length = float(np.linalg.norm(end - start))
     ahead = (end - start) / length
@@ -103,4 +112,17 @@ def build_pier(layout: Layout, shop: CoastWorkshop, rng: np.random.Generator) ->
     tip = np.append(start + count * _BAY_M * ahead, layout.pier_deck_m)
     head = bay(*HEAD_M, (True, True, True))
     parts.append(place(head, tip[None], np.array([heading]), np.ones((1, 3)), skins[:1], np.array([owner])))
+    bents = np.concatenate([position[:, :2], tip[None, :2]]) + 0.5 * _BAY_M * ahead
+    wide = np.append(np.ones(count), HEAD_M[1] / WIDTH_M)
+    long = layout.pier_deck_m - shop.relief(bents) + _DRIVEN_M
+    parts.append(
+        place(
+            piles(WIDTH_M),
+            np.column_stack([bents, np.full(count + 1, layout.pier_deck_m)]),
+            np.full(count + 1, heading),
+            np.column_stack([np.ones(count + 1), wide, long]),
+            skins[[*range(count), 0]],
+            np.full(count + 1, owner),
+        )
+    )
     return parts

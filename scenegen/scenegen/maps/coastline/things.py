@@ -18,7 +18,6 @@ from scenegen.maps.coastline.cars import build_cars
 from scenegen.maps.coastline.folk import build_folk
 from scenegen.maps.coastline.gardens import build_gardens
 from scenegen.maps.coastline.greenery import build_greenery
-from scenegen.maps.coastline.horizon import build_horizon
 from scenegen.maps.coastline.houses import draw_houses
 from scenegen.maps.coastline.huts import build_huts, draw_huts, standing_height
 from scenegen.maps.coastline.layout import LIGHTHOUSE_YARD_M, Layout
@@ -74,7 +73,7 @@ def build_things(
         One for each subsystem.
     """
     house_rng, shell_rng, hut_rng, tower_rng, pier_rng, wall_rng, rock_rng, road_rng, life_rng = rngs
-    car_rng, boat_rng, folk_rng, green_rng, far_rng = life_rng.spawn(5)
+    car_rng, boat_rng, folk_rng, green_rng = life_rng.spawn(4)
     houses = draw_houses(layout, shop, house_rng)
     lawns, fences = build_gardens(houses, layout, shop, house_rng)
     rows = draw_huts(shop, hut_rng)
@@ -90,7 +89,7 @@ def build_things(
     boats, boat_count = build_boats(layout, sea, shop, boat_rng)
     folk, folk_count = build_folk(layout, rows, shop, folk_rng)
     green, grown = build_greenery(shop, green_rng)
-    parts += [*green, *build_horizon(rock, shop, far_rng), *fences, *roadside, *cars, *rocks, *boats, *folk]
+    parts += [*green, *fences, *roadside, *cars, *rocks, *boats, *folk]
     size = np.full(len(rows), 2.6), np.full(len(rows), 2.2)
     huts = shapely.buffer(rectangles(rows[:, :2], *size, rows[:, 2]), -0.05, join_style="mitre")
     holes = (*(b.footprint.buffer(-0.01, join_style="mitre") for b in houses), *huts)
