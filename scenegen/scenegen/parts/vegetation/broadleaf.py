@@ -16,38 +16,52 @@ from scenegen.parts.vegetation.outline import pull_inside, room, side_area
 from scenegen.parts.vegetation.species import Broadleaf
 from scenegen.parts.vegetation.tubes import Mesh, tubes
 
-_FULL_FACES = 2400
-"""Triangles for which the numbers of limbs, branches and twigs of a species are meant."""
+_TRUNK_FACES, _LIMB_FACES, _BRANCH_FACES, _TWIG_FACES = 84, 24, 9, 3
+"""Triangles of one of each, as `tubes` makes them."""
+_WOOD_SHARE = 0.38
+"""Of the triangles of a tree in leaf."""
 _FOOT = -0.03
+_SHOWS_TWIGS = 0.75
+"""Share of the foliage below which twigs are seen, and drawn."""
 _HIDDEN_SHARE, _HIDDEN_AREA = 0.2, 1.7
 """Share of the sprays that fill the inside of a crown, and their area against the others: nobody sees their edges."""
+_STRAY = 0.4
+"""How far sprays stand off their twigs, in their lengths: petioles and side shoots too fine to draw."""
 _TWIG_RADIUS = (0.0016, 0.0006)
 
 
 def grow(species: Broadleaf, plan: Plan, rng: np.random.Generator) -> Grown:
     """Grow one tree of about unit height."""
-    wood = _richness(species, plan)
+    bare = plan.in_leaf < _SHOWS_TWIGS
+    faces = plan.faces / (1.0 + plan.in_leaf * bare)
+    wood = _richness(species, faces, bare)
     trunk = _trunk(species, rng)
     limbs = _limbs(species, trunk, wood[0], rng)
     branches = _branches(species, limbs, wood[1], rng)
     twigs = _twigs(species, branches, wood[2], rng)
-    bare = plan.in_leaf < 0.75
-    small = plan.faces < 900
+    small = faces < 900
     pieces = [tubes(limbs, 3 if small else 4, True), tubes(_coarse(branches, bare), 3, True)]
     if bare:
         pieces.append(tubes(twigs, 3, True))
     body, boughs = tubes(trunk, 5 if small else 7, False), merged(pieces)
-    left = plan.faces - len(body[1]) - len(boughs[1]) * (not bare)
+    left = round(faces) - (len(body[1]) + len(boughs[1])) * (not bare)
     leaves = NOTHING
     if plan.in_leaf > 0.0:
-        leaves = _foliage(species, branches, twigs, max(left, 240) // FACES, plan.in_leaf, rng)
+        leaves = _foliage(species, branches, twigs, max(left, 160) // FACES, plan.in_leaf, rng)
     return Grown(body, boughs, leaves)
 
 
-def _richness(species: Broadleaf, plan: Plan) -> tuple[int, int, int]:
-    """Limbs of the tree, branches of a limb, twigs of a branch."""
-    w, q = species.wood, (plan.faces / _FULL_FACES) ** (1.0 / 3.0)
-    return max(5, round(w.limbs * q)), max(3, round(w.branches * q)), max(2, round(w.twigs * q))
+def _richness(species: Broadleaf, faces: float, bare: bool) -> tuple[int, int, int]:
+    """Limbs of the tree, branches of a limb, twigs of a branch: as many as the triangles for wood allow."""
+    w = species.wood
+    room_for = faces if bare else _WOOD_SHARE * faces
+    for share in np.geomspace(1.2, 0.3, 24):
+        limbs, branches = max(5, round(w.limbs * share)), max(3, round(w.branches * share))
+        twigs = max(2, round(w.twigs * share))
+        each = branches * (_BRANCH_FACES + _TWIG_FACES * twigs if bare else _TWIG_FACES)
+        if w.stems * _TRUNK_FACES + limbs * (_LIMB_FACES + each) <= room_for:
+            break
+    return limbs, branches, twigs
 
 
 def _trunk(species: Broadleaf, rng: np.random.Generator) -> Branches:
@@ -165,10 +179,13 @@ def _foliage(
     spin = unit(rng.normal(size=(count, 3)))
     heading = unit(along + 0.8 * spin + 0.4 * outward + np.array([0.0, 0.0, -1.2 * leaf.droop]))
     facing = 0.8 * unit(rng.normal(size=(count, 3))) + outward + np.array([0.0, 0.0, 0.6])
+    stray = (1.0 - leaf.clumped) * rng.normal(size=(count, 3))
     if in_leaf < 1.0:
         owner = np.concatenate([on_twig, on_branch])
         keep = rng.uniform(size=len(twigs.points))[owner % len(twigs.points)] < in_leaf
-        base, heading, facing, length = base[keep], heading[keep], facing[keep], length[keep]
-    made = sprays(base - 0.3 * length[:, None] * heading, heading, facing, length, leaf.slender)
+        base, heading, facing, length, stray = (a[keep] for a in (base, heading, facing, length, stray))
+    made = sprays(
+        base + length[:, None] * (_STRAY * stray - 0.3 * heading), heading, facing, length, leaf.slender
+    )
     middle = middles(made)
     return moved_by(made, pull_inside(outline, middle, 0.95) - middle)

@@ -17,7 +17,7 @@ from scenegen.parts.workshop import Workshop
 
 _PIECE_M = 1.7
 _FORMS = 3
-_SPRAYS = 54
+_SPRAYS = 42
 _FOOT = -0.05
 _BODY = 0.70
 _TURN_SHARE = 0.35

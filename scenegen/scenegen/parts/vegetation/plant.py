@@ -16,13 +16,13 @@ from scenegen.parts.vegetation.species import SPECIES, Species
 from scenegen.parts.vegetation.tree import tree
 from scenegen.parts.workshop import Workshop
 
-__all__ = ["SPECIES", "crown_radius_m", "hedges", "plant", "shrubs"]
+__all__ = ["SPECIES", "crown_radius_m", "hedges", "plant", "shrubs", "triangles"]
 
 _CLASS_TOP_M = (6.0, 9.5, 14.0)
 """Upper ends of the size classes but the last: a spray of leaves has one size, so tall trees have more of them."""
-_FACES = (640, 1050, 1800, 3000)
+_FACES = (520, 900, 1650, 3000)
 """Triangles of a tree of each size class."""
-_COPIES_PER_FORM = (1, 10, 40)
+_COPIES_PER_FORM = (1, 15, 60)
 """From how many trees of one species and size there is a first, second and third form."""
 _WIDTH = (0.86, 1.0)
 _BARE, _FULL = 0.03, 0.97
@@ -40,6 +40,11 @@ def crown_radius_m(species: str, height_m: float | Float64[np.ndarray, "n"]) -> 
     height_m : float or float64 (n,)
     """
     return np.asarray(_species(species).growth.outline.radius * np.asarray(height_m, np.float64))
+
+
+def triangles(height_m: Float64[np.ndarray, "n"]) -> int:
+    """About how many triangles trees of these heights [m] take at full detail; divide a budget by it for `detail`."""
+    return int(np.asarray(_FACES)[np.searchsorted(_CLASS_TOP_M, height_m)].sum())
 
 
 def plant(
@@ -64,7 +69,7 @@ def plant(
         Its season decides how much foliage deciduous trees carry.
     rng : numpy.random.Generator
     detail : float
-        Scales the number of triangles: 640, 1,050, 1,800 and 3,000 for trees up to 6, 9.5, 14 m
+        Scales the number of triangles: 520, 900, 1,650 and 3,000 for trees up to 6, 9.5, 14 m
         and above.
 
     Returns

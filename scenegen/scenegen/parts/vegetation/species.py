@@ -47,7 +47,7 @@ class Wood:
     leader : float
         Height the trunk reaches as a trunk: apical dominance, 1 for conifers and poplars, 0.5 for oaks.
     limbs, branches, twigs : int
-        Limbs of a large tree, branches of each limb, twigs of each branch.
+        Limbs of a tree of some 2,500 triangles, branches of each limb, twigs of each branch.
     limb_angle_deg : (float, float)
         Between trunk and limb, for the lowest and the highest limb.
     branch_angle_deg : float
