@@ -56,6 +56,8 @@ class Recipe(Section):
     """Pairs in one flight; it stores one frame more."""
     layers: Names = check_layers(DEFAULT_LAYERS)
     """What is stored of each frame."""
+    movers: bool = True
+    """Vehicles, people and boats go their ways; off: they stand still where they are at the world's time zero."""
     climate: ClimateKnobs = ClimateKnobs()
     flight: FlightKnobs = FlightKnobs()
     render: RenderKnobs = RenderKnobs()

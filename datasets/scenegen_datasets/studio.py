@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from jaxtyping import Float64
 
 from scenegen.climate.knobs import draw_weather_and_hour
 from scenegen.climate.sun import sun_direction
 from scenegen.foundation.rng import stream
+from scenegen.movers.clock import Clock
 from scenegen.thermal_state import ThermalState
 from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.commit import ShardWriter
@@ -74,12 +76,15 @@ class Studio:
             irradiance = bake(
                 stage.loaded, stage.exposure, state, self._camera.band_um, self._recipe.exposure
             )
-        with watch("light"):
-            lit = self._tracer.light(stage.loaded, state, irradiance)
+        clock = self._clock(path)
         with watch("fly"):
             rng = stream(self._recipe.seed, *path, "flight")
-            flight = fly(stage.world, self._recipe.flight, job.frames, rng, stage.airspace)
-        size = self._film(job, lit, flight, self._record(job, stage, state, flight), told)
+            flight = fly(stage.world, self._recipe.flight, job.frames, rng, stage.airspace, clock)
+        world_s = clock.at(flight.time_s)
+        with watch("light"):
+            cast = self._tracer.cast(stage.world, flight.world_from_camera, world_s)
+            lit = self._tracer.light(stage.loaded, state, irradiance, cast)
+        size = self._film(job, lit, flight, world_s, self._record(job, stage, state, flight), told)
         del lit
         return {"stages": watch.take(), "bytes": size, "rejected": flight.rejected}
 
@@ -100,7 +105,21 @@ class Studio:
             self._standing = wanted
         return self._stage
 
-    def _film(self, job: ClipJob, lit: Lit, flight: Trajectory, record: ClipRecord, told: Told) -> int:
+    def _clock(self, path: tuple[str, str, int, int]) -> Clock:
+        """When in the life of its world a clip takes place."""
+        if not self._recipe.movers:
+            return Clock.stopped()
+        return Clock.draw(stream(self._recipe.seed, *path, "clock"))
+
+    def _film(
+        self,
+        job: ClipJob,
+        lit: Lit,
+        flight: Trajectory,
+        world_s: Float64[np.ndarray, "poses"],
+        record: ClipRecord,
+        told: Told,
+    ) -> int:
         rng = stream(self._recipe.seed, "clip", job.map, job.world, job.clip, "sensor")
         detector = Microbolometer(self._camera, self._recipe.sensor, rng)
         layers, watch, poses = self._recipe.stored_layers, self._watch, flight.world_from_camera
@@ -108,7 +127,8 @@ class Studio:
             for k in range(job.frames):
                 time_s = float(flight.time_s[k + 1])
                 with watch("trace"):
-                    frame = self._tracer.frame(lit, poses[k + 1], poses[k + 2], poses[k])
+                    times_s = float(world_s[k + 1]), float(world_s[k + 2]), float(world_s[k])
+                    frame = self._tracer.frame(lit, poses[k + 1], poses[k + 2], poses[k], times_s)
                 with watch("sense"):
                     reading = detector.read(frame.radiance, time_s)
                 with watch("encode"):
