@@ -26,7 +26,7 @@ STATION_M = 3.0
 
 _DRIVE_HALF_M = 2.6
 _CHORD_M = 24.0
-_FAR_CHORD_M = 60.0
+_FAR_CHORD_M = 70.0
 
 
 class Cover(StrEnum):
@@ -210,7 +210,7 @@ def _parcels(
         return np.asarray(xy + shift[:, ::-1])
 
     cuts = shapely.linestrings(np.stack(lines))
-    far = shapely.distance(cuts, shapely.Point(0.0, 0.0)) > 500.0
+    far = shapely.distance(cuts, shapely.Point(0.0, 0.0)) > 340.0
     cuts = shapely.segmentize(cuts, np.where(far, _FAR_CHORD_M, _CHORD_M))
     bent = [bend(shapely.get_coordinates(cut)) for cut in cuts]
     edge = shapely.box(-FAR_M, -FAR_M, FAR_M, FAR_M).exterior

@@ -12,7 +12,7 @@ from scenegen.geometry.ground import Region
 from scenegen.maps.field.country import Cover, Parcel
 from scenegen.maps.field.workshop import FieldWorkshop
 
-_DETAIL_M = 430.0
+_DETAIL_M = 340.0
 _SWATH_M = {
     Cover.HAY: (5.0, 8.0),
     Cover.STUBBLE: (7.0, 12.0),

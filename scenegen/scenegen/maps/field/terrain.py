@@ -65,7 +65,7 @@ def build_terrain(
     regions = [*coarse, *fine, *hollow]
     spacing = np.repeat([_LINE_SPACING_M, _FINE_LINE_M, _CONTACT_M], [len(coarse), len(fine), len(hollow)])
     points = np.concatenate([contact_points(solid, _CONTACT_M, 0.9), _lattice(grounds, half_m, rng)])
-    plan = triangulate([r.outline for r in regions], points, spacing, (1.15 * half_m, 0.09))
+    plan = triangulate([r.outline for r in regions], points, spacing, (1.1 * half_m, 0.16))
     return drape(plan, regions, shop.relief)
 
 
