@@ -7,7 +7,6 @@ arrays. A child that dies is reported as a crash: it would not take its job alon
 
 from __future__ import annotations
 
-import io
 import json
 import struct
 import sys
@@ -78,8 +77,8 @@ def sound(ending: str) -> bytes:
     plate.apply_translation((0, 0, -0.5))
     scene.add_geometry(plate, node_name="ground")
     house = trimesh.creation.box(extents=(6, 8, 5))
-    for k, x in enumerate((-10.0, 10.0)):
-        scene.add_geometry(house, node_name=f"house {k}", geom_name="house", transform=_moved(x, 3.0, 2.5))
+    scene.add_geometry(house, node_name="house 0", geom_name="house", transform=_moved(-10.0, 3.0, 2.5))
+    scene.graph.update("house 1", geometry="house", matrix=_moved(10.0, 3.0, 2.5))
     scene.add_geometry(
         trimesh.creation.icosphere(subdivisions=2, radius=2.0), node_name="ball", transform=_moved(0, -9, 4)
     )

@@ -112,26 +112,24 @@ def _load(data: bytes, ending: str, names: Mapping[str, Names], only: Names | No
         **options,
     )
     faces = 0
-    found: list[Soup] = []
+    rank = {name: k for k, name in enumerate(names)}
+    found: dict[int, Soup] = {}
     for node in scene.graph.nodes_geometry:
         matrix, geometry = scene.graph[node]
         mesh = scene.geometry[geometry]
         if not isinstance(mesh, trimesh.Trimesh):
             continue
-        called = only or names.get(str(geometry)) or names[node]
+        key = str(geometry) if geometry in names else node
         faces += len(mesh.faces)
         if faces > MAX_FACES:
             raise InputError(f"has more than {MAX_FACES:,} triangles; decimate it or split it")
-        found.append(
-            Soup(
-                np.asarray(mesh.vertices, np.float64),
-                np.asarray(mesh.faces, np.int64),
-                np.asarray(matrix, np.float64),
-                called,
-            )
+        found[rank.get(key, 0)] = Soup(
+            np.asarray(mesh.vertices, np.float64),
+            np.asarray(mesh.faces, np.int64),
+            np.asarray(matrix, np.float64),
+            only or names[key],
         )
-    order = sorted(range(len(found)), key=lambda k: (found[k].names.object, k))
-    return [found[k] for k in order]
+    return [found[k] for k in sorted(found)]
 
 
 def _limit() -> None:

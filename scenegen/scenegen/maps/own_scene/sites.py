@@ -156,7 +156,8 @@ def _nearest(
 def _summed(
     cluster: Int64[np.ndarray, "members"], count: int, values: Float64[np.ndarray, "members 3"]
 ) -> Float64[np.ndarray, "clusters 3"]:
-    return np.stack([np.bincount(cluster, values[:, k], count) for k in range(3)], axis=1)
+    columns = [np.bincount(cluster, values[:, k], count) for k in range(3)]
+    return np.stack(columns, axis=1).astype(np.float64)  # counts of nothing are whole numbers
 
 
 def _unit(vectors: Float64[np.ndarray, "rows 3"]) -> Float64[np.ndarray, "rows 3"]:
