@@ -22,7 +22,10 @@ from scenegen.maps.field.track import LANE_M, RADIUS_M, STRAIGHT_M, fits_inside,
 
 SEASON = Season(48.0, 7, 15)
 SEEDS = (0, 1, 2)
-SMALL = FieldKnobs(extent_m=400.0, farms=6.0, wood_share=0.1, stand_occupancy=0.02)
+SMALL = FieldKnobs(
+    extent_m=400.0, farms=6.0, wood_share=0.06, hedge_share=0.1, trees_per_hectare=4.0, stand_occupancy=0.02,
+    bystanders=12.0,
+)  # fmt: skip
 GROUND = [
     Semantic.ROAD, Semantic.SIDEWALK, Semantic.ROAD_MARKING, Semantic.SOIL, Semantic.GRASS, Semantic.WATER,
     Semantic.SPORTS_SURFACE,
@@ -90,7 +93,7 @@ def test_arrays_are_sound(world):
 
 
 def test_size_and_classes(world):
-    assert 300_000 < len(world.mesh.faces) <= 1_300_000
+    assert 200_000 < len(world.mesh.faces) <= 1_300_000
     assert 30_000 < len(world.sites.area) <= 150_000
     present = {Semantic(k) for k in np.unique(world.face_semantic)}
     assert len(present) >= 18
@@ -173,8 +176,9 @@ def test_goals_have_the_right_size(world, seed):
         posts = line & (z < 0.05) & (np.abs(np.abs(local[:, 1]) - GOAL_WIDTH_M / 2) < 0.2)
         inner = 2 * np.abs(local[posts, 1]).min()
         assert inner == pytest.approx(GOAL_WIDTH_M, abs=0.02)
-        bar = line & (z > 2.0)
-        assert z[bar & (np.abs(local[:, 1]) < 3.6)].min() == pytest.approx(GOAL_HEIGHT_M, abs=0.03)
+        across = np.ptp(local[:, 1].reshape(-1, 3), axis=1) > 7.0
+        bar = across & line.reshape(-1, 3).all(axis=1) & (z.reshape(-1, 3).min(axis=1) > 2.0)
+        assert z.reshape(-1, 3)[bar].min() == pytest.approx(GOAL_HEIGHT_M, abs=0.02)
 
 
 @pytest.mark.parametrize("kind", [Semantic.CAR, Semantic.LARGE_VEHICLE, Semantic.PERSON])
@@ -198,7 +202,7 @@ def test_masts_and_poles_are_rooted(world):
     feet = np.array([g[np.argmin(g[:, 2])] for g in near if np.ptp(g[:, :2], axis=0).max() <= 20.0])
     assert len(feet) + len(stands) >= 4
     sunk = feet[:, 2] - world.ground.at(feet[:, :2])
-    assert (sunk < -0.05).all() and (sunk > -1.2).all()
+    assert (sunk < -0.05).all() and (sunk > -2.2).all()
 
 
 def test_nets_are_strands_not_sheets(world):
