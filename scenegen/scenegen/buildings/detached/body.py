@@ -197,5 +197,5 @@ def outline(bodies: tuple[Body, ...], roles: tuple[Role, ...] = tuple(Role)) -> 
     """Plan of bodies in their own frame."""
     mine = [b for b in bodies if b.role in roles]
     boxes = [shapely.box(b.x0_m, b.y0_m, b.x1_m, b.y1_m) for b in mine]
-    joined = shapely.union_all(boxes, grid_size=1e-4)
+    joined = shapely.union_all(boxes) if len(boxes) > 1 else boxes[0]
     return max(shapely.get_parts(joined), key=lambda g: float(g.area))

@@ -101,7 +101,9 @@ def draw_bodies(
     )  # fmt: skip
     if integral:
         gate = min(5.2, 0.42 * wide)
-        main = replace(main, doors=(("south", wide / 2 - 0.4 - gate, wide / 2 - 0.4),), entrance_m=-0.18 * wide)
+        main = replace(
+            main, doors=(("south", wide / 2 - 0.4 - gate, wide / 2 - 0.4),), entrance_m=-0.18 * wide
+        )
     bodies = [main]
     spare = room_m - wide
     if traits.garage and not integral:
@@ -159,7 +161,9 @@ def draw_dormers(main: Body, bodies: tuple[Body, ...], rng: np.random.Generator)
         return np.zeros((0, 3))
     side, width = sides[int(rng.integers(len(sides)))], rng.uniform(1.25, 1.7)
     along = np.linspace(-reach, reach, count) if count > 1 else np.zeros(1)
-    return np.column_stack([along * (0.85 if count > 1 else 1.0), np.full(count, side), np.full(count, width)])
+    return np.column_stack(
+        [along * (0.85 if count > 1 else 1.0), np.full(count, side), np.full(count, width)]
+    )
 
 
 def _main_roof(
@@ -197,7 +201,17 @@ def _garage(main: Body, style: HomeStyle, spare: float, rng: np.random.Generator
     x0, y0, deep = main.x1_m, rng.uniform(0.0, 1.8), rng.uniform(5.9, 6.5)
     if choice > 0.88:
         return [
-            Body(x0, x0 + min(wide, 3.4), y0, y0 + deep, 2.3, 1, Role.SHELTER, Top.FLAT, ends=(End.WALL, End.GABLE))
+            Body(
+                x0,
+                x0 + min(wide, 3.4),
+                y0,
+                y0 + deep,
+                2.3,
+                1,
+                Role.SHELTER,
+                Top.FLAT,
+                ends=(End.WALL, End.GABLE),
+            )
         ]
     door = (("south", x0 + 0.35, x0 + wide - 0.35),)
     eave = min(_GARAGE_EAVE_M, main.eave_m - 0.2)
@@ -252,7 +266,18 @@ def _ell(main: Body, side: float, deep: float, rng: np.random.Generator) -> list
     ends = (far, End.VALLEY) if side < 0 else (End.VALLEY, far)
     return [
         Body(
-            x0, x0 + wide, y0, y1, main.eave_m, main.storeys, Role.HOUSE, Top.RIDGED, True, False, main.slope, ends
+            x0,
+            x0 + wide,
+            y0,
+            y1,
+            main.eave_m,
+            main.storeys,
+            Role.HOUSE,
+            Top.RIDGED,
+            True,
+            False,
+            main.slope,
+            ends,
         )
     ]
 
@@ -277,7 +302,10 @@ def _clear_entrance(bodies: list[Body]) -> list[Body]:
         return [replace(main, entrance_m=None), *bodies[1:]]
     a, b = max(free, key=lambda f: f[1] - f[0])
     wished = main.entrance_m if main.entrance_m is not None else (a + b) / 2
-    return [replace(main, entrance_m=float(np.clip(wished, a + 0.4 * (b - a), a + 0.6 * (b - a)))), *bodies[1:]]
+    return [
+        replace(main, entrance_m=float(np.clip(wished, a + 0.4 * (b - a), a + 0.6 * (b - a)))),
+        *bodies[1:],
+    ]
 
 
 def _porch(bodies: list[Body], rng: np.random.Generator) -> list[Body]:

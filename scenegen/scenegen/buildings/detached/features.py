@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import shapely
 
 from scenegen.buildings.detached.body import Body, Home, Role, Top
 from scenegen.classes import Semantic
@@ -20,12 +21,33 @@ SLAB_M = 0.1
 _STACK_M = (0.95, 0.6)
 _BELOW_RIDGE_M = 1.6
 _POST_M = 0.14
-_DORMER_OUT_M, _DORMER_SLOPE = 0.25, 0.75
+_DORMER_FRONT_M, _DORMER_WALL_M, _DORMER_SLOPE = 0.8, 1.15, 0.75
+"""From the wall line to a dormer's front; height of its front; slope of its roof."""
+_DORMER_OUT_M, _DORMER_EAVES_M = 0.25, 0.18
 
 
 def home_features(homes: Sequence[Home], rng: np.random.Generator) -> list[Part]:
     """All parts beyond walls and roofs."""
     return [*_chimneys(homes, rng), *_dormers(homes), *_posts(homes)]
+
+
+def pierced(home: Home) -> list[shapely.Polygon]:
+    """Rectangles of the plan where chimneys and dormers stand on the main roof."""
+    body, found = home.bodies[0], []
+    for x, y, _ in home.chimneys:
+        a, b = _STACK_M[::-1] if body.turned else _STACK_M
+        found.append(shapely.box(x - a / 2, y - b / 2, x + a / 2, y + b / 2))
+    for along, side, width in home.dormers:
+        a = width / 2 + _DORMER_EAVES_M
+        depth = _DORMER_FRONT_M + _dormer_rise(width) / body.slope
+        corners = np.array([[-a, 0.3, 0.0], [a, 0.3, 0.0], [a, depth, 0.0], [-a, depth, 0.0]])
+        found.append(shapely.Polygon(_on_slope(corners, body, float(along), float(side))[:, :2]))
+    return [shapely.Polygon(home.lot.world(shapely.get_coordinates(f)[:4])) for f in found]
+
+
+def _dormer_rise(width: float) -> float:
+    """From the foot of a dormer's front to its ridge [m]."""
+    return _DORMER_WALL_M + width / 2 * _DORMER_SLOPE
 
 
 def _stack(pots: int) -> Template:
@@ -47,7 +69,9 @@ def _chimneys(homes: Sequence[Home], rng: np.random.Generator) -> list[Part]:
     for home in homes:
         for x, y, top in home.chimneys:
             heading = home.lot.heading_rad + (0.5 * np.pi if home.bodies[0].turned else 0.0)
-            rows.append([*home.lot.world(np.array([[x, y]]))[0], home.floor_m + top - _BELOW_RIDGE_M, heading])
+            rows.append(
+                [*home.lot.world(np.array([[x, y]]))[0], home.floor_m + top - _BELOW_RIDGE_M, heading]
+            )
             skins.append([home.style.stone, home.style.stone, home.style.roof])
             owner.append(home.object)
     table, pots = np.array(rows).reshape(-1, 4), rng.integers(1, 3, len(rows))
@@ -93,11 +117,11 @@ def _on_slope(points: np.ndarray, body: Body, along: float, side: float) -> np.n
 def _dormer(body: Body, width: float) -> list[tuple[np.ndarray, str, Semantic]]:
     """Quads of one dormer: front with a pane, cheeks, roof slopes that run back into the main slope."""
     s, a = body.slope, width / 2
-    front, sill = 0.8, 0.16  # distance from the wall line into the roof; height of the front's foot
-    foot = front * s + sill
-    head = foot + 1.15
-    peak = head + a * _DORMER_SLOPE
-    out, over, b = _DORMER_OUT_M, 0.18, 0.16
+    front = _DORMER_FRONT_M
+    foot = front * s + 0.16
+    head = foot + _DORMER_WALL_M
+    peak = foot + _dormer_rise(width)
+    out, over, b = _DORMER_OUT_M, _DORMER_EAVES_M, 0.16
 
     def back(z: float) -> float:
         return (z - 0.16) / s
@@ -107,10 +131,17 @@ def _dormer(body: Body, width: float) -> list[tuple[np.ndarray, str, Semantic]]:
     pieces: list[tuple[list[list[float]], str, Semantic]] = []
     for k in range(4):
         n = (k + 1) % 4
-        frame = [[p[k][0], front, p[k][1]], [p[n][0], front, p[n][1]], [q[n][0], front, q[n][1]], [q[k][0], front, q[k][1]]]
+        frame = [
+            [p[k][0], front, p[k][1]],
+            [p[n][0], front, p[n][1]],
+            [q[n][0], front, q[n][1]],
+            [q[k][0], front, q[k][1]],
+        ]
         pieces.append((frame, "gable", Semantic.WALL))
     pieces.append(([[x, front, z] for x, z in q], "glass", Semantic.WINDOW))
-    pieces.append(([[-a, front, head], [a, front, head], [0, front, peak], [0, front, peak]], "gable", Semantic.WALL))
+    pieces.append(
+        ([[-a, front, head], [a, front, head], [0, front, peak], [0, front, peak]], "gable", Semantic.WALL)
+    )
     tip = [back(head), head]
     pieces.append(([[a, front, foot], [a, *tip], [a, *tip], [a, front, head]], "gable", Semantic.WALL))
     pieces.append(([[-a, *tip], [-a, front, foot], [-a, front, head], [-a, *tip]], "gable", Semantic.WALL))
@@ -161,7 +192,9 @@ def _post_places(body: Body, porch: bool, main: Body) -> list[tuple[float, float
     inset = 0.15
     if porch:
         count = max(round((body.x1_m - body.x0_m) / 2.8), 1) + 1
-        return [(float(x), body.y0_m + inset) for x in np.linspace(body.x0_m + inset, body.x1_m - inset, count)]
+        return [
+            (float(x), body.y0_m + inset) for x in np.linspace(body.x0_m + inset, body.x1_m - inset, count)
+        ]
     x = body.x1_m - inset if body.x0_m >= main.x1_m - 1e-6 else body.x0_m + inset
     return [(x, float(y)) for y in np.linspace(body.y0_m + inset, body.y1_m - inset, 3)]
 

@@ -12,14 +12,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from scenegen.buildings.detached.body import Body, End, Home, Role, Top
+from scenegen.buildings.detached.features import pierced
 from scenegen.classes import Semantic
+from scenegen.geometry.hidden import push_out
 from scenegen.geometry.part import Part, concatenate
 from scenegen.geometry.patch import patches
 
 _SPACING_M, _THIN_SPACING_M = 2.9, 6.0
 _THICKNESS_M = 0.16
 _VERGE_M = 0.3
-_BEHIND_M = 0.05
+_BEHIND_M, _CLEAR_M = 0.05, 0.3
 
 Quads = list[list[list[float]]]
 
@@ -59,9 +61,14 @@ def home_roofs(homes: Sequence[Home]) -> Part:
                 if quads:
                     bucket.append(_placed(np.array(quads, np.float64), body, home))
                     labels[k] += [(skin, semantic, home.object)] * len(quads)
-    return concatenate(
-        [_patched(tops, labels[0], _SPACING_M, False), _patched(thins, labels[1], _THIN_SPACING_M, True)]
-    )
+    upper = _patched(tops, labels[0], _SPACING_M, False)
+    return concatenate([_cleared(upper, homes), _patched(thins, labels[1], _THIN_SPACING_M, True)])
+
+
+def _cleared(roofs: Part, homes: Sequence[Home]) -> Part:
+    """Roof sites moved out from below chimneys and dormers."""
+    plans = [rectangle for home in homes for rectangle in pierced(home)]
+    return push_out(roofs, np.array(plans, dtype=object), _CLEAR_M) if plans else roofs
 
 
 def _patched(
@@ -120,7 +127,9 @@ def _ridged(body: Body, valleys: tuple[_Valley | None, _Valley | None]) -> _Roof
         low, wide = body.eave_m - over * s, c + over
         left, right = (_eave_corner(ends[k], body.ends[k], over, k) for k in (0, 1))
 
-        def at(u: float, share: float, lift: float, low: float = low, wide: float = wide, side: float = side) -> list[float]:
+        def at(
+            u: float, share: float, lift: float, low: float = low, wide: float = wide, side: float = side
+        ) -> list[float]:
             return [u, side * wide * (1 - share), low + share * (ridge - low) + lift]
 
         def edge(k: int, share: float, left: float = left, right: float = right) -> float:
@@ -200,7 +209,9 @@ def _verge(roof: _Roof, at, u: float, back: float, lip: float, side: float, sign
     roof.thin.append(under[::-1] if flip else under)
 
 
-def _hip_end(roof: _Roof, body: Body, end: tuple[float, float], over: float, ridge: float, sign: float) -> None:
+def _hip_end(
+    roof: _Roof, body: Body, end: tuple[float, float], over: float, ridge: float, sign: float
+) -> None:
     """Triangle, edge and underside of a hip."""
     c, t = body.half_across_m, _THICKNESS_M
     low, foot = body.eave_m - over * body.slope, end[0] + sign * over
@@ -211,7 +222,9 @@ def _hip_end(roof: _Roof, body: Body, end: tuple[float, float], over: float, rid
     roof.top.append([*lifted, apex, apex])
     roof.thin.append([a, b, lifted[1], lifted[0]])
     share = (over + _BEHIND_M) / wide
-    inner = [[p[0] + share * (end[1] - p[0]), p[1] * (1 - share), low + share * (ridge - low)] for p in (a, b)]
+    inner = [
+        [p[0] + share * (end[1] - p[0]), p[1] * (1 - share), low + share * (ridge - low)] for p in (a, b)
+    ]
     roof.thin.append([b, a, inner[0], inner[1]])
 
 
@@ -265,7 +278,12 @@ def _flat(body: Body) -> _Roof:
         roof.top.append([[x, y, z] for x, y in corners[::-1]])
         return roof
     b = _BEHIND_M
-    inner = [(-half_x + b, -half_y + b), (half_x - b, -half_y + b), (half_x - b, half_y - b), (-half_x + b, half_y - b)]
+    inner = [
+        (-half_x + b, -half_y + b),
+        (half_x - b, -half_y + b),
+        (half_x - b, half_y - b),
+        (-half_x + b, half_y - b),
+    ]
     for k in range(4):
         p, q, q_in, p_in = corners[k], corners[(k + 1) % 4], inner[(k + 1) % 4], inner[k]
         roof.thin.append([[*q, z], [*p, z], [*p_in, z], [*q_in, z]])

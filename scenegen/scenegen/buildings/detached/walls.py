@@ -51,9 +51,7 @@ def home_walls(homes: Sequence[Home], rng: np.random.Generator) -> Part:
     blank = [r for r in runs if not r.gate and _storeys(r, homes) == 0]
     pierced = [r for r in runs if r.gate or _storeys(r, homes) > 0]
     walls, filling = _table(pierced, homes, rng)
-    return concatenate(
-        [_some_unheated(facades(walls, filling), homes, rng), _blank_walls(blank, homes)]
-    )
+    return concatenate([_some_unheated(facades(walls, filling), homes, rng), _blank_walls(blank, homes)])
 
 
 def _runs(index: int, home: Home) -> list[_Run]:
@@ -141,9 +139,7 @@ def _storeys(run: _Run, homes: Sequence[Home]) -> int:
     return max(run.body.storeys - covered, 0)
 
 
-def _table(
-    runs: Sequence[_Run], homes: Sequence[Home], rng: np.random.Generator
-) -> tuple[Walls, np.ndarray]:
+def _table(runs: Sequence[_Run], homes: Sequence[Home], rng: np.random.Generator) -> tuple[Walls, np.ndarray]:
     """One row per pierced stretch, and what fills its cells."""
     styles = [homes[r.home].style for r in runs]
     lots = [homes[r.home].lot for r in runs]
@@ -158,7 +154,9 @@ def _table(
     columns = np.where(gate, 1, np.maximum(np.rint(length / pitch), 1)).astype(np.int64)
     sill, head = np.array([s.sill_m for s in styles]), np.array([s.head_m for s in styles])
     top = np.array([r.top_m for r in runs])
-    head = np.minimum(head, np.array([r.body.eave_m for r in runs]) - covered - (storeys - 1) * storey_m - 0.2)
+    head = np.minimum(
+        head, np.array([r.body.eave_m for r in runs]) - covered - (storeys - 1) * storey_m - 0.2
+    )
     sill = np.minimum(sill, head - 0.5)
     floor = np.array([homes[r.home].floor_m for r in runs])
     depth = np.array([homes[r.home].foundation_m for r in runs])
@@ -184,7 +182,9 @@ def _table(
         object=np.array([homes[r.home].object for r in runs], np.int64),
         recess_m=np.array([s.recess_m for s in styles]),
     )
-    return walls, _filling(walls, runs, styles_blank=np.array([s.blank_share for s in styles]), hut=hut, rng=rng)
+    return walls, _filling(
+        walls, runs, styles_blank=np.array([s.blank_share for s in styles]), hut=hut, rng=rng
+    )
 
 
 def _filling(

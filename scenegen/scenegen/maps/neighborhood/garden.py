@@ -104,7 +104,9 @@ def plan_garden(
     return Garden(*pieces), stands
 
 
-def _patio(bodies: tuple[Body, ...], room: shapely.Polygon, rng: np.random.Generator) -> shapely.Polygon | None:
+def _patio(
+    bodies: tuple[Body, ...], room: shapely.Polygon, rng: np.random.Generator
+) -> shapely.Polygon | None:
     """A terrace against the widest free stretch of the back wall of the main body."""
     main = bodies[0]
     behind = [b for b in bodies[1:] if abs(b.y0_m - main.y1_m) < 1e-6]
@@ -132,7 +134,9 @@ def _basin(rng: np.random.Generator) -> shapely.Polygon:
     else:
         turn = np.linspace(0.0, 2 * np.pi, 22, endpoint=False)
         radius = 1.0 + 0.22 * np.cos(turn) - 0.13 * np.cos(2 * turn) - 0.2 * np.sin(turn)
-        shape = shapely.Polygon(np.column_stack([b / 2 * radius * np.cos(turn), a / 2 * 1.15 * radius * np.sin(turn)]))
+        shape = shapely.Polygon(
+            np.column_stack([b / 2 * radius * np.cos(turn), a / 2 * 1.15 * radius * np.sin(turn)])
+        )
     if rng.uniform() < 0.35:
         shape = shapely.affinity.rotate(shape, 90.0, origin=(0, 0))
     x0, y0, _, _ = shape.bounds

@@ -67,7 +67,10 @@ def grade(relief: Relief, pads: list[shapely.Polygon], street: shapely.Polygon, 
         corners = shapely.get_coordinates(pad)[:4]
         middle, along, across = _frame(corners)
         reach = np.linalg.norm(corners - middle, axis=1).max() + _EASE_M + _LEVEL_M
-        low, high = np.floor((middle - reach + half_m) / _CELL_M), np.ceil((middle + reach + half_m) / _CELL_M)
+        low, high = (
+            np.floor((middle - reach + half_m) / _CELL_M),
+            np.ceil((middle + reach + half_m) / _CELL_M),
+        )
         j, i = (slice(max(int(a), 1), min(int(b), count - 1)) for a, b in zip(low, high, strict=True))
         x, y = east[i, j] - middle[0], north[i, j] - middle[1]
         u = np.abs(x * along[0] + y * along[1]) - np.linalg.norm(corners[1] - corners[0]) / 2

@@ -11,11 +11,12 @@ import shapely
 from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region, drape
 from scenegen.geometry.part import Part
-from scenegen.geometry.planar import triangulate
+from scenegen.geometry.planar import Triangulation, triangulate
 from scenegen.geometry.scatter import contact_points, graded_points, hexagonal
-from scenegen.maps.neighborhood.outskirts import FAR_M, far_regions
+from scenegen.maps.neighborhood.markings import marking_quads
+from scenegen.maps.neighborhood.outskirts import far_regions
 from scenegen.maps.neighborhood.parcels import Parcel
-from scenegen.maps.neighborhood.streets import KERB_M, StreetPlan
+from scenegen.maps.neighborhood.streets import FAR_M, KERB_M, StreetPlan
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
 
 _FINE_M, _COARSE_M, _NEAR_M = 3.0, 4.6, 3.5
@@ -36,8 +37,8 @@ def build_ground(
     cars: np.ndarray,
     shop: NeighborhoodWorkshop,
     rng: np.random.Generator,
-) -> Part:
-    """All ground, from the middle to the far edge.
+) -> tuple[Part, Triangulation]:
+    """All ground, from the middle to the far edge, and the plan of its mesh.
 
     Parameters
     ----------
@@ -69,7 +70,7 @@ def build_ground(
         (half * 1.03, 0.2),
         contact_points(list(cars), *_CAR_ROW),
     )
-    return drape(plane, regions, shop.relief)
+    return drape(plane, regions, shop.relief), plane
 
 
 def _lattice(
@@ -99,7 +100,7 @@ def _line_spacing(region: Region) -> float:
     """Largest distance of points along an outline [m]."""
     if region.hole:
         return _WALL_ROW[0]
-    return _CAR_LINE_M if region.lumped else _LINE_M
+    return _CAR_LINE_M if region.lumped and not region.merge_m else _LINE_M
 
 
 def _grain(region: Region) -> float:
@@ -136,7 +137,12 @@ def _streets(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Genera
             for p in shapely.get_parts(strip.intersection(plan.front))
             if p.geom_type == "Polygon"
         ]
-    return [*regions, Region(plan.carriageway, asphalt, int(Semantic.ROAD), road)]
+    regions.append(Region(plan.carriageway, asphalt, int(Semantic.ROAD), road))
+    paint = shop.palette.special("asphalt_aged", "paint", solar_absorptance=0.55)
+    marking, quads = shop.builder.new_objects(), shapely.polygons(marking_quads(plan, rng))
+    return regions + [
+        Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True, merge_m=_LINE_M) for q in quads
+    ]
 
 
 def _paving(
@@ -181,9 +187,10 @@ def _below_cars(cars: np.ndarray, regions: Sequence[Region]) -> list[Region]:
     """The ground below each car, with a site of its own: beside the car it is another world."""
     if not len(cars):
         return []
-    tree = shapely.STRtree(np.array([r.outline for r in regions], dtype=object))
+    whole = [r for r in regions if not r.lumped]
+    tree = shapely.STRtree(np.array([r.outline for r in whole], dtype=object))
     car, ground = tree.query(shapely.centroid(cars), predicate="intersects")
     top = np.zeros(len(cars), np.int64)
     np.maximum.at(top, car, ground)
     dark = shapely.buffer(cars, -_SILL_M, join_style="mitre")
-    return [replace(regions[k], outline=c, lumped=True) for c, k in zip(dark, top.tolist(), strict=True)]
+    return [replace(whole[k], outline=c, lumped=True) for c, k in zip(dark, top.tolist(), strict=True)]

@@ -28,7 +28,7 @@ Share = Annotated[Span, AfterValidator(_within(0.0, 1.0))]
 class NeighborhoodKnobs(Section):
     """Distributions of the neighborhood family; every world draws its own values inside them."""
 
-    extent_m: Annotated[Span, AfterValidator(_within(220.0, 700.0))] = (560.0, 620.0)
+    extent_m: Annotated[Span, AfterValidator(_within(220.0, 700.0))] = (540.0, 590.0)
     """Side of the square the street network is drawn in [m], 220 to 700; gardens reach a little beyond."""
 
     lot_width_m: Annotated[Span, AfterValidator(_within(14.0, 45.0))] = (18.0, 25.0)
@@ -67,7 +67,7 @@ class NeighborhoodKnobs(Section):
     shed_share: Share = (0.3, 0.6)
     """Share of gardens with a shed."""
 
-    trees_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 16.0))] = (3.5, 7.0)
+    trees_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 16.0))] = (1.4, 2.6)
     """Trees in gardens and commons."""
 
     conifer_share: Share = (0.1, 0.4)
@@ -76,10 +76,10 @@ class NeighborhoodKnobs(Section):
     street_tree_share: Share = (0.2, 0.8)
     """Share of streets with trees on the verge."""
 
-    hedge_share: Annotated[Span, AfterValidator(_within(0.0, 0.8))] = (0.1, 0.35)
+    hedge_share: Annotated[Span, AfterValidator(_within(0.0, 0.8))] = (0.03, 0.1)
     """Share of garden borders with a hedge."""
 
-    fence_share: Annotated[Span, AfterValidator(_within(0.0, 0.9))] = (0.35, 0.65)
+    fence_share: Annotated[Span, AfterValidator(_within(0.0, 0.9))] = (0.18, 0.36)
     """Share of the other garden borders with a fence."""
 
     driveway_cars: Annotated[Span, AfterValidator(_within(0.0, 2.0))] = (0.6, 1.1)

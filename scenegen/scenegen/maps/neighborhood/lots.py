@@ -73,9 +73,7 @@ def _block_left(ring: shapely.LinearRing, outer: bool) -> np.ndarray:
     return xy if bool(shapely.is_ccw(ring)) != outer else xy[::-1]
 
 
-def _frontage(
-    ring: np.ndarray, width_m: float, rng: np.random.Generator
-) -> tuple[np.ndarray, np.ndarray]:
+def _frontage(ring: np.ndarray, width_m: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Close points along a block's outline, and the lot each belongs to."""
     line = shapely.LineString(ring)
     count = max(int(line.length / _PITCH_M), 12)
@@ -114,9 +112,7 @@ def _corners(points: np.ndarray, place: np.ndarray) -> np.ndarray:
     return np.asarray(place[peaks[keep]])
 
 
-def _cells(
-    points: np.ndarray, owner: np.ndarray, room: shapely.Geometry
-) -> tuple[np.ndarray, np.ndarray]:
+def _cells(points: np.ndarray, owner: np.ndarray, room: shapely.Geometry) -> tuple[np.ndarray, np.ndarray]:
     """Areas of the lots that are large enough, and their numbers; they touch along common lines exactly."""
     far = np.abs(points).max() * 8 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
     diagram = Voronoi(np.concatenate([points, far]))

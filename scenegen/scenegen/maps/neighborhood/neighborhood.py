@@ -6,20 +6,26 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
+from scipy.ndimage import distance_transform_cdt
 
-from scenegen.buildings.detached.body import Role, outline
+from scenegen.buildings.detached.body import Home, Role, Top, outline
 from scenegen.buildings.detached.features import home_features
 from scenegen.buildings.detached.roofs import home_roofs
 from scenegen.buildings.detached.walls import home_walls
+from scenegen.buildings.lots import Lot
 from scenegen.climate.season import Season
 from scenegen.geometry.builder import GeometryBuilder
 from scenegen.geometry.relief import draw_relief
+from scenegen.maps.neighborhood.borders import build_fences, plan_borders
 from scenegen.maps.neighborhood.grading import Graded, grade
+from scenegen.maps.neighborhood.greenery import build_greenery, obstacles, plan_trees
 from scenegen.maps.neighborhood.ground import build_ground
+from scenegen.maps.neighborhood.kerbside import build_kerbside, plan_kerbside
 from scenegen.maps.neighborhood.knobs import NeighborhoodKnobs
 from scenegen.maps.neighborhood.lots import divide
-from scenegen.maps.neighborhood.outskirts import far_objects
+from scenegen.maps.neighborhood.outskirts import far_objects, lie_of
 from scenegen.maps.neighborhood.parcels import Parcel, Settler, homes_of
+from scenegen.maps.neighborhood.people import people
 from scenegen.maps.neighborhood.streets import StreetPlan, draw_streets
 from scenegen.maps.neighborhood.traffic import build_traffic, find_spots
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
@@ -27,7 +33,7 @@ from scenegen.materials.palette import PaletteBuilder
 from scenegen.world import World
 
 _MARGIN_M = 10.0
-_HEIGHT_CELL_M = 2.0
+_HEIGHT_CELL_M, _RASTER_M = 2.0, 4.0
 
 
 def build_neighborhood(knobs: NeighborhoodKnobs, season: Season, rng: np.random.Generator) -> World:
@@ -42,13 +48,16 @@ def build_neighborhood(knobs: NeighborhoodKnobs, season: Season, rng: np.random.
         The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
     """
     own, streets, hills, skins, lots_rng, settle_rng, roofs_rng, ground, walls, cars_rng, far = rng.spawn(11)
+    posts_rng, border_rng, tree_rng, people_rng = rng.spawn(4)
     extent, depth = own.uniform(*knobs.extent_m), own.uniform(*knobs.lot_depth_m)
     width = own.uniform(*knobs.lot_width_m)
     plan = draw_streets(
         extent, depth, own.uniform(*knobs.street_curvature), own.uniform(*knobs.cul_de_sac_share), streets
     )
     relief = draw_relief(hills, hills.uniform(*knobs.relief_m), (240.0, 900.0))
-    shop = NeighborhoodWorkshop(relief, PaletteBuilder(skins), GeometryBuilder(), season, knobs)
+    palette = PaletteBuilder(skins)
+    palette.variants("asphalt_aged", 3)  # the fourth is its paint
+    shop = NeighborhoodWorkshop(relief, palette, GeometryBuilder(), season, knobs)
     division = divide(plan, width, depth, lots_rng)
     parcels = _settle(division.lots, plan, shop, settle_rng)
     half = float(np.abs(plan.outline.bounds).max()) + 8.0
@@ -56,18 +65,41 @@ def build_neighborhood(knobs: NeighborhoodKnobs, season: Season, rng: np.random.
     shop = replace(shop, relief=graded)
     homes = homes_of(parcels, shop, roofs_rng)
     spots = find_spots(plan, parcels, shop, cars_rng)
-    holes = [home.plan((Role.HOUSE, Role.GARAGE, Role.HUT)) for home in homes]
-    holes += [s for home in homes for s in _slabs(home)]
+    holes = _holes(homes)
+
+    solid = np.array([home.plan() for home in homes], dtype=object)
+    kerbside = plan_kerbside(plan, parcels, homes, solid, shop, posts_rng)
+    borders = plan_borders(division, parcels, plan, shop, border_rng)
+    blocked = obstacles(plan, parcels, holes, kerbside, borders)
+    trees = plan_trees(plan, parcels, blocked, shop, tree_rng)
 
     builder = shop.builder
-    builder.add(build_ground(plan, parcels, holes, spots.plan, shop, ground))
-    builder.add(home_walls(homes, walls), home_roofs(homes), *home_features(homes, walls))
+    land, plane = build_ground(plan, parcels, holes, spots.plan, shop, ground)
+    builder.add(land, home_walls(homes, walls), home_roofs(homes), *home_features(homes, walls))
+    builder.add(*build_kerbside(kerbside, homes, shop, posts_rng), *build_fences(borders, shop, border_rng))
     builder.add(*build_traffic(spots, shop, cars_rng))
-    builder.add(*far_objects(plan, shop, far))
-    return _world(plan, parcels, graded, shop, (("cars", len(spots.place)),))
+    builder.add(*build_greenery(trees, borders, parcels, blocked, shop, tree_rng))
+    trunks = shapely.buffer(shapely.points(trees.xy), 0.4, quad_segs=1)
+    pools = [p.garden.coping for p in parcels if p.garden.coping is not None]
+    busy = [blocked.solid, blocked.posts, blocked.lines, spots.plan, trunks, np.array(pools, dtype=object)]
+    crowd, standing = people(plan, parcels, np.concatenate(busy), shop, people_rng)
+    builder.add(*crowd, *far_objects(plan, lie_of(plane, plan, relief), shop, far))
+    counts = (
+        ("cars", len(spots.place)),
+        ("trees", len(trees.xy)),
+        ("fences", sum(line.style != "hedge" for line in borders)),
+        ("hedges", sum(line.style == "hedge" for line in borders)),
+        ("utility poles", sum(len(p) for p in kerbside.poles)),
+        ("service drops", len(kerbside.drops)),
+        ("lamps", len(kerbside.lamps)),
+        ("people", len(standing)),
+    )
+    return _world(plan, parcels, graded, shop, counts)
 
 
-def _settle(lots, plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Generator) -> list[Parcel]:  # type: ignore[no-untyped-def]
+def _settle(
+    lots: tuple[Lot, ...], plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Generator
+) -> list[Parcel]:
     """Build on all lots; neighbours are of about the same age."""
     age, each = rng.spawn(2)
     vector, phase = age.normal(0.0, 2 * np.pi / 420.0, (3, 2)), age.uniform(0.0, 2 * np.pi, 3)
@@ -101,13 +133,16 @@ def _box_in_frame(parcel: Parcel, pieces: list[shapely.Polygon]) -> shapely.Poly
     return shapely.Polygon(parcel.lot.world(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])))
 
 
-def _slabs(home) -> list[shapely.Polygon]:  # type: ignore[no-untyped-def]
-    """Plans of porch floors."""
-    from scenegen.buildings.detached.body import Top
-
-    porches = [b for b in home.bodies if b.role is Role.SHELTER and b.top is Top.SHED]
-    corners = [shapely.get_coordinates(shapely.box(b.x0_m, b.y0_m, b.x1_m, b.y1_m))[:-1] for b in porches]
-    return [shapely.Polygon(home.lot.world(c)) for c in corners]
+def _holes(homes: list[Home]) -> list[shapely.Polygon]:
+    """Where there is no ground: below houses, sheds and the floors of porches."""
+    holes = []
+    for home in homes:
+        holes.append(home.plan((Role.HOUSE, Role.GARAGE, Role.HUT)))
+        for body in home.bodies:
+            if body.role is Role.SHELTER and body.top is Top.SHED:
+                box = shapely.box(body.x0_m, body.y0_m, body.x1_m, body.y1_m)
+                holes.append(shapely.Polygon(home.lot.world(shapely.get_coordinates(box)[:-1])))
+    return holes
 
 
 def _world(
@@ -118,7 +153,7 @@ def _world(
     counts: tuple[tuple[str, int], ...],
 ) -> World:
     merged = shop.builder.merge()
-    half = _inner_half(plan.outline)
+    x, y, half = _inner_square(plan.outline)
     return World(
         map="neighborhood",
         mesh=merged.mesh,
@@ -129,7 +164,7 @@ def _world(
         sites=merged.sites,
         palette=shop.palette.surfaces(),
         ground=graded.sample(float(np.abs(plan.outline.bounds).max()) + 60.0, _HEIGHT_CELL_M),
-        flight_box_m=((-half, -half, 0.0), (half, half, shop.knobs.flight_ceiling_m)),
+        flight_box_m=((x - half, y - half, 0.0), (x + half, y + half, shop.knobs.flight_ceiling_m)),
         counts=(
             ("streets", len(plan.lines)),
             ("dead ends", sum(a + b for a, b in plan.dead_end)),
@@ -142,9 +177,13 @@ def _world(
     )
 
 
-def _inner_half(outline_: shapely.Polygon) -> float:
-    """Half the side [m] of the largest upright square around the origin inside the detailed part."""
-    reach = np.linspace(40.0, 460.0, 211)
+def _inner_square(outline_: shapely.Polygon) -> tuple[float, float, float]:
+    """Middle and half the side [m] of the largest upright square inside the detailed part."""
     inner = outline_.buffer(-_MARGIN_M)
-    fits = [inner.contains(shapely.box(-r, -r, r, r)) for r in reach]
-    return float(reach[max(int(np.argmin(fits)) - 1, 0)])
+    x0, y0, x1, y1 = inner.bounds
+    x, y = np.arange(x0, x1, _RASTER_M), np.arange(y0, y1, _RASTER_M)
+    east, north = np.meshgrid(x, y)
+    inside = shapely.contains_xy(inner, east.ravel(), north.ravel()).reshape(east.shape)
+    reach = distance_transform_cdt(np.pad(inside, 1), "chessboard")[1:-1, 1:-1]
+    i, j = np.unravel_index(int(np.argmax(reach)), reach.shape)
+    return float(x[j]), float(y[i]), float((reach[i, j] - 1) * _RASTER_M)

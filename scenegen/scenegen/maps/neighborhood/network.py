@@ -123,7 +123,10 @@ def _cut(
         step = (b - a) / length
         if length - 2 * gap > 2 * _SHORTEST_STUB_M:
             middle = length / 2 + rng.uniform(-0.1, 0.1) * length
-            stubs += [np.array([a, a + (middle - gap) * step]), np.array([b, b - (length - middle - gap) * step])]
+            stubs += [
+                np.array([a, a + (middle - gap) * step]),
+                np.array([b, b - (length - middle - gap) * step]),
+            ]
         elif length - gap - 8.0 > _SHORTEST_STUB_M:
             start, sign = (a, 1.0) if rng.uniform() < 0.5 else (b, -1.0)
             stubs.append(np.array([start, start + sign * (length - gap - 8.0) * step]))

@@ -6,31 +6,26 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
+from jaxtyping import Float64
 
 from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import clear_of, first_come, rectangles
+from scenegen.geometry.planar import Triangulation
+from scenegen.geometry.relief import Relief
 from scenegen.geometry.template import Template, place
 from scenegen.geometry.trees import grove
-from scenegen.maps.neighborhood.streets import CARRIAGEWAY_M, StreetPlan
+from scenegen.maps.neighborhood.streets import CARRIAGEWAY_M, FAR_M, StreetPlan, road_lines
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
 
-FAR_M = 2400.0
 _COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "grass_watered")
 _BELOW_GROUND_M = 1.2
-
-
-def road_lines(plan: StreetPlan) -> np.ndarray:
-    """Centre lines of the roads that leave."""
-    lines = []
-    for start, direction in plan.exits:
-        t = np.linspace(-1.0, 2.0 * FAR_M, 60)
-        across = np.array([-direction[1], direction[0]])
-        sway = 45.0 * (1 - np.cos(t / 380.0)) * np.sign(start @ across + 1e-9)
-        lines.append(shapely.LineString(start + t[:, None] * direction + sway[:, None] * across))
-    return np.array(lines, dtype=object)
+_SUNK = 0.14
+"""How deep groves stand in the ground, in heights: their lowest boughs hide the trunks they have not."""
+_FINE_RING_M = 45.0
+"""Width of the ring around the neighborhood in which the mesh is as fine as the relief."""
 
 
 def far_regions(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Generator) -> list[Region]:
@@ -45,7 +40,7 @@ def far_regions(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Gen
     length = rng.uniform(50.0, 110.0, count) * (reach / half)
     heading = rng.uniform(0, np.pi, count)
     shapes = rectangles(centre, length, length * rng.uniform(0.4, 0.9, count), heading)
-    roads = shapely.buffer(road_lines(plan), CARRIAGEWAY_M / 2, cap_style="flat")
+    roads = shapely.buffer(road_lines(plan.exits), CARRIAGEWAY_M / 2, cap_style="flat")
     taken = np.array([plan.outline.buffer(14.0), *shapely.buffer(roads, 4.0)], dtype=object)
     keep = clear_of(shapes, taken) & first_come(shapes) & shapely.within(shapes, edge.buffer(-50.0))
     for shape, k in zip(shapes[keep], rng.integers(0, len(_COVERS), keep.sum()), strict=True):
@@ -58,18 +53,57 @@ def far_regions(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Gen
         for piece in shapely.get_parts(shapely.intersection(shape, inside)):
             if piece.geom_type == "Polygon":
                 regions.append(Region(piece, asphalt, int(Semantic.ROAD), road))
-    gap = plan.outline.difference(plan.front.buffer(0.01))
-    for shape in roads:  # from the last street of the plan to the outline
-        for piece in shapely.get_parts(shapely.intersection(shape, gap)):
-            if piece.geom_type == "Polygon" and piece.area > 1.0:
-                regions.append(Region(piece, asphalt, int(Semantic.ROAD), road))
     return regions
 
 
-def far_objects(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Generator) -> list[Part]:
-    """Plain houses in hamlets, barns, groves and woods; they thin out with distance."""
+def lie_of(plane: Triangulation, plan: StreetPlan, relief: Relief) -> Relief:
+    """Height of the ground as its mesh has it: near the neighborhood that is the relief, farther out the mesh is coarse.
+
+    Parameters
+    ----------
+    plane : Triangulation
+        Of the ground.
+    plan : StreetPlan
+    relief : callable
+    """
+    near = shapely.convex_hull(plan.outline).buffer(_FINE_RING_M, quad_segs=4)
+    shapely.prepare(near)
+    corners = plane.points[plane.triangles]
+    outside = corners[~shapely.contains_xy(near, corners.mean(axis=1))]
+    tree = shapely.STRtree(shapely.polygons(outside))
+
+    def height(xy: Float64[np.ndarray, "points 2"]) -> Float64[np.ndarray, "points"]:
+        result = relief(xy)
+        point, triangle = tree.query(shapely.points(xy), predicate="intersects")
+        a, b, c = (outside[triangle, k] for k in range(3))
+        share = [_doubled(p, q, xy[point]) / _doubled(a, b, c) for p, q in ((b, c), (c, a), (a, b))]
+        result[point] = sum(w * relief(v) for w, v in zip(share, (a, b, c), strict=True))
+        return result
+
+    return height
+
+
+def _doubled(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Twice the signed area of triangles."""
+    return np.asarray((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0]))
+
+
+def far_objects(
+    plan: StreetPlan, lie: Relief, shop: NeighborhoodWorkshop, rng: np.random.Generator
+) -> list[Part]:
+    """Plain houses in hamlets, barns, groves and woods; they thin out with distance.
+
+    Parameters
+    ----------
+    plan : StreetPlan
+    lie : callable
+        Height of the ground there [m].
+    shop : NeighborhoodWorkshop
+    rng : numpy.random.Generator
+    """
+    shop = replace(shop, relief=lie)
     half = float(np.abs(plan.outline.bounds).max())
-    count = 1500
+    count = 1150
     angle = rng.uniform(0.0, 2 * np.pi, count)
     reach = half * 0.8 + 1800.0 * rng.uniform(0.0, 1.0, count) ** 1.6
     centre = np.column_stack([np.cos(angle), np.sin(angle)]) * reach[:, None]
@@ -80,7 +114,7 @@ def far_objects(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Gen
     length = np.where(built, rng.uniform(9.0, 17.0, count), rng.uniform(14.0, 44.0, count))
     width = np.where(built, rng.uniform(8.0, 11.0, count), length * rng.uniform(0.5, 1.0, count))
     shapes = rectangles(centre, length + 4.0, width + 4.0, heading)
-    roads = shapely.buffer(road_lines(plan), CARRIAGEWAY_M / 2 + 3.0, cap_style="flat")
+    roads = shapely.buffer(road_lines(plan.exits), CARRIAGEWAY_M / 2 + 3.0, cap_style="flat")
     keep = clear_of(shapes, np.array([plan.outline.buffer(6.0), *roads], dtype=object)) & first_come(shapes)
     houses, woods = keep & built, keep & ~built
     size = np.column_stack([length, width, rng.uniform(3.0, 6.0, count)])
@@ -109,7 +143,11 @@ def _plain_house() -> Template:
 
 
 def _plain_houses(
-    centre: np.ndarray, size: np.ndarray, heading: np.ndarray, shop: NeighborhoodWorkshop, rng: np.random.Generator
+    centre: np.ndarray,
+    size: np.ndarray,
+    heading: np.ndarray,
+    shop: NeighborhoodWorkshop,
+    rng: np.random.Generator,
 ) -> Part:
     walls, roofs = ("stucco_render", "brick_red", "wood_siding"), ("clay_roof_tile", "asphalt_shingle")
     count = len(centre)
@@ -125,10 +163,12 @@ def _plain_houses(
     return place(replace(template, site_position=lifted), base, heading, scale, skins, owner)
 
 
-def _groves(centre: np.ndarray, width: np.ndarray, shop: NeighborhoodWorkshop, rng: np.random.Generator) -> Part:
+def _groves(
+    centre: np.ndarray, width: np.ndarray, shop: NeighborhoodWorkshop, rng: np.random.Generator
+) -> Part:
     count = len(centre)
     skin = np.array([[shop.palette.pick("tree_crown", rng)] for _ in range(count)], np.int64).reshape(-1, 1)
-    position = np.column_stack([centre, shop.relief(centre)])
-    scale = np.column_stack([width, width, rng.uniform(7.0, 14.0, count)])
+    scale = np.column_stack([width, width, rng.uniform(8.0, 15.0, count)])
+    position = np.column_stack([centre, shop.relief(centre) - _SUNK * scale[:, 2]])
     owner = shop.builder.new_objects(count) + np.arange(count)
     return place(grove(rng), position, rng.uniform(0.0, 2 * np.pi, count), scale, skin, owner)

@@ -121,7 +121,10 @@ class Settler:
             return Parcel(lot, dry)
         modern = age + rng.normal(0.0, 0.12) < self.modern
         traits = Traits(
-            modern, 2 if rng.uniform() < self.two_storeys else 1, bool(rng.uniform() < self.garages), self.unheated
+            modern,
+            2 if rng.uniform() < self.two_storeys else 1,
+            bool(rng.uniform() < self.garages),
+            self.unheated,
         )
         style = draw_home_style(traits, self.cold_glass, self.shop.palette, rng)
         bodies = self._fit(lot, traits, style, rng)
@@ -130,7 +133,11 @@ class Settler:
         parcel = Parcel(lot, dry, bodies, style=style)
         parcel = replace(parcel, solid=parcel.world(outline(bodies)))
         parcel = self._approaches(parcel, rng)
-        hut = draw_hut((rng.uniform(2.2, 3.6), rng.uniform(2.0, 3.0)), style, rng) if rng.uniform() < self.sheds else None
+        hut = (
+            draw_hut((rng.uniform(2.2, 3.6), rng.uniform(2.0, 3.0)), style, rng)
+            if rng.uniform() < self.sheds
+            else None
+        )
         garden, hut = plan_garden(
             lot, bodies, hut, parcel.driveway, self.plan, bool(rng.uniform() < self.pools), rng
         )
@@ -138,16 +145,16 @@ class Settler:
         if hut is not None:
             skins = self.shop.palette
             wall = skins.pick("wood_siding", rng)
-            roof = skins.pick(("asphalt_shingle", "bitumen_felt_roof", "metal_roof_painted_mid")[int(rng.integers(3))], rng)
+            roof = skins.pick(
+                ("asphalt_shingle", "bitumen_felt_roof", "metal_roof_painted_mid")[int(rng.integers(3))], rng
+            )
             hut_style = replace(
                 style, wall=wall, gable=wall, roof=roof, door=wall, glass=self.cold_glass, blank_share=0.8,
                 storey_m=2.0, unheated_share=1.0,
             )  # fmt: skip
         return replace(parcel, garden=garden, hut=hut, hut_style=hut_style)
 
-    def _fit(
-        self, lot: Lot, traits: Traits, style: HomeStyle, rng: np.random.Generator
-    ) -> tuple[Body, ...]:
+    def _fit(self, lot: Lot, traits: Traits, style: HomeStyle, rng: np.random.Generator) -> tuple[Body, ...]:
         """Bodies in the lot's frame, inside its borders; empty if nothing sensible fits."""
         room = lot.local().buffer(-_SIDE_M, join_style="mitre")
         if room.is_empty or room.geom_type != "Polygon":
@@ -158,7 +165,10 @@ class Settler:
         for attempt in range(_ATTEMPTS):
             shrink = 1.0 - 0.07 * attempt
             drawn = draw_bodies(
-                replace(traits, garage=traits.garage and attempt < 4), style, (x1 - x0) * min(shrink, 0.94), rng
+                replace(traits, garage=traits.garage and attempt < 4),
+                style,
+                (x1 - x0) * min(shrink, 0.94),
+                rng,
             )
             mirror = bool(rng.uniform() < 0.5)
             bodies = tuple(b.moved(0.0, 0.0, mirror) for b in drawn)
@@ -168,7 +178,16 @@ class Settler:
             dx, dy = (
                 g.ravel()
                 for g in np.meshgrid(
-                    np.array([middle, x0 - left + 0.05, x1 - right - 0.05, (x0 + x1 - left - right) / 2, middle - 2, middle + 2]),
+                    np.array(
+                        [
+                            middle,
+                            x0 - left + 0.05,
+                            x1 - right - 0.05,
+                            (x0 + x1 - left - right) / 2,
+                            middle - 2,
+                            middle + 2,
+                        ]
+                    ),
                     np.array([back, back - 1.3, back + 2.0, back + 4.0, 3.2 - low]),
                     indexing="ij",
                 )
@@ -244,7 +263,16 @@ def homes_of(parcels: list[Parcel], shop: NeighborhoodWorkshop, rng: np.random.G
             floor, depth = _stand(parcel.world(outline((parcel.hut,))), shop)
             none = np.zeros((0, 3))
             homes.append(
-                Home(shop.builder.new_objects(), parcel.hut_style, (parcel.hut,), parcel.lot, floor - 0.08, depth, none, none)
+                Home(
+                    shop.builder.new_objects(),
+                    parcel.hut_style,
+                    (parcel.hut,),
+                    parcel.lot,
+                    floor - 0.08,
+                    depth,
+                    none,
+                    none,
+                )
             )
     return homes
 

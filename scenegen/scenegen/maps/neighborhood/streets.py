@@ -17,6 +17,9 @@ KERB_M = 0.12
 CARRIAGEWAY_M = 7.2
 """Kerb to kerb [m]."""
 
+FAR_M = 2400.0
+"""Half the side of the square that is land at all [m]."""
+
 DEEPEST = 1.12
 """Depth of the deepest lots over the usual one."""
 
@@ -82,15 +85,29 @@ def draw_streets(
     network = draw_network(extent_m, pitch, cul_de_sac_share, rng)
     warp, turn = Warp.draw(curvature, extent_m, rng), rng.uniform(0.0, 2 * np.pi)
     lines = tuple(_wind(line, warp, turn) for line in network.lines)
-    carriageway = _carriageway(lines, network)
-    front = shapely.set_precision(_filled(carriageway, verge + walk), _GRID_M)
+    inner = _carriageway(lines, network)
     reach = DEEPEST * lot_depth_m + verge + walk + _MARGIN_M
-    outline = shapely.Polygon(carriageway.buffer(reach + 14.0, quad_segs=4).exterior)
+    outline = shapely.Polygon(inner.buffer(reach + 14.0, quad_segs=4).exterior)
     outline = outline.buffer(-14.0, quad_segs=4).simplify(0.5)
     exits = np.array([[e[0], e[0] + e[1]] for e in network.exits]).reshape(-1, 2)
     bent = _turned(warp(exits), turn).reshape(-1, 2, 2)
     bent[:, 1] -= bent[:, 0]
+    ways = shapely.buffer(road_lines(bent), CARRIAGEWAY_M / 2, cap_style="flat")
+    out = [_largest(shapely.intersection(way, outline)) for way in ways]
+    carriageway = _largest(shapely.union_all([inner, *out], grid_size=_GRID_M))
+    front = shapely.set_precision(_filled(carriageway, verge + walk), _GRID_M)
     return StreetPlan(lines, network.dead_end, carriageway, verge, walk, front, outline, bent)
+
+
+def road_lines(exits: Float64[np.ndarray, "exits 2 2"]) -> np.ndarray:
+    """Centre lines of the roads on which streets go on outwards, up to the far edge, as shapely lines."""
+    lines = []
+    for start, direction in exits:
+        t = np.linspace(-1.0, 2.0 * FAR_M, 60)
+        across = np.array([-direction[1], direction[0]])
+        sway = 45.0 * (1 - np.cos(t / 380.0)) * np.sign(start @ across + 1e-9)
+        lines.append(shapely.LineString(start + t[:, None] * direction + sway[:, None] * across))
+    return np.array(lines, dtype=object)
 
 
 def _wind(line: np.ndarray, warp: Warp, turn_rad: float) -> np.ndarray:
@@ -121,4 +138,4 @@ def _filled(carriageway: shapely.Polygon, distance_m: float) -> shapely.Polygon:
 
 
 def _largest(geometry: shapely.Geometry) -> shapely.Polygon:
-    return max(shapely.get_parts(geometry), key=lambda g: float(g.area))
+    return max(shapely.get_parts(geometry), key=lambda g: float(shapely.area(g)))

@@ -68,7 +68,9 @@ def find_spots(
     if drives:
         mouths = shapely.buffer(shapely.centroid(np.array(drives, dtype=object)), 0.1)
         parked = road & ~driven
-        keep[parked] &= clear_of(shapes[parked], np.array(drives, dtype=object), 1.0) & clear_of(shapes[parked], mouths)
+        keep[parked] &= clear_of(shapes[parked], np.array(drives, dtype=object), 1.0) & clear_of(
+            shapes[parked], mouths
+        )
     return Spots(place[keep], lift[keep], driven[keep], van[keep], shapes[keep])
 
 
