@@ -11,10 +11,11 @@ import numpy as np
 
 from scenegen.parts.vegetation.branches import GOLDEN_RAD, Branches, aside, sprout, unit
 from scenegen.parts.vegetation.cards import FACES, SPRAY_AREA, middles, moved_by, sprays
-from scenegen.parts.vegetation.growth import NOTHING, Grown, Plan, merged
+from scenegen.parts.vegetation.growth import Grown, Plan
+from scenegen.parts.vegetation.mesh import NOTHING, Mesh, merged
 from scenegen.parts.vegetation.outline import pull_inside, room, side_area
 from scenegen.parts.vegetation.species import Broadleaf
-from scenegen.parts.vegetation.tubes import Mesh, tubes
+from scenegen.parts.vegetation.tubes import tubes
 
 _TRUNK_FACES, _LIMB_FACES, _BRANCH_FACES, _TWIG_FACES = 84, 24, 9, 3
 """Triangles of one of each, as `tubes` makes them."""
@@ -25,6 +26,7 @@ _SHOWS_TWIGS = 0.75
 """Share of the foliage below which twigs are seen, and drawn."""
 _HIDDEN_SHARE, _HIDDEN_AREA = 0.2, 1.7
 """Share of the sprays that fill the inside of a crown, and their area against the others: nobody sees their edges."""
+_REACH = 0.96
 _STRAY = 0.4
 """How far sprays stand off their twigs, in their lengths: petioles and side shoots too fine to draw."""
 _TWIG_RADIUS = (0.0016, 0.0006)
@@ -39,12 +41,13 @@ def grow(species: Broadleaf, plan: Plan, rng: np.random.Generator) -> Grown:
     limbs = _limbs(species, trunk, wood[0], rng)
     branches = _branches(species, limbs, wood[1], rng)
     twigs = _twigs(species, branches, wood[2], rng)
+    trunk, limbs, branches, twigs = _filling(species, (trunk, limbs, branches, twigs))
     small = faces < 900
     pieces = [tubes(limbs, 3 if small else 4, True), tubes(_coarse(branches, bare), 3, True)]
     if bare:
         pieces.append(tubes(twigs, 3, True))
     body, boughs = tubes(trunk, 5 if small else 7, False), merged(pieces)
-    left = round(faces) - (len(body[1]) + len(boughs[1])) * (not bare)
+    left = round(faces) - (len(body) + len(boughs)) * (not bare)
     leaves = NOTHING
     if plan.in_leaf > 0.0:
         leaves = _foliage(species, branches, twigs, max(left, 160) // FACES, plan.in_leaf, rng)
@@ -147,6 +150,20 @@ def _bounded(species: Broadleaf, branches: Branches) -> Branches:
     stuck = step < 1e-4
     points[:, 1:][stuck] += np.array([0.0, 0.0, -2e-3])
     return Branches(points, branches.radius)
+
+
+def _filling(species: Broadleaf, orders: tuple[Branches, ...]) -> tuple[Branches, ...]:
+    """Orders of branches stretched until twigs reach the top and the sides of the outline."""
+    outline, tips = species.outline, orders[-1].points.reshape(-1, 3)
+    tall = (_REACH - outline.base) / (tips[:, 2].max() - outline.base)
+    wide = _REACH * outline.radius / np.hypot(tips[:, 0], tips[:, 1]).max()
+    found = []
+    for order in orders:
+        points = order.points * np.array([wide, wide, 1.0])
+        above = np.maximum(points[..., 2] - outline.base, 0.0)
+        points[..., 2] += (tall - 1.0) * above
+        found.append(Branches(points, order.radius))
+    return tuple(found)
 
 
 def _coarse(branches: Branches, bare: bool) -> Branches:

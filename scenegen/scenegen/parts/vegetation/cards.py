@@ -6,7 +6,7 @@ import numpy as np
 from jaxtyping import Float64
 
 from scenegen.parts.vegetation.branches import across, unit
-from scenegen.parts.vegetation.tubes import Mesh
+from scenegen.parts.vegetation.mesh import Mesh
 
 _STAR = np.array([[0.0, 0.0], [0.97, 0.20], [0.45, 0.58], [0.80, -0.42], [0.24, -0.55]])
 """Corners of a spray of unit length, along and across: a notch in the middle, no two edges alike."""
@@ -53,14 +53,14 @@ def sprays(
     )
     corners = base[:, None, :] + length[:, None, None] * corners
     faces = (5 * np.arange(len(base))[:, None] + np.array([0, 1, 2, 0, 4, 3])).reshape(-1, 3)
-    return corners.reshape(-1, 3), faces
+    return Mesh(corners.reshape(-1, 3), faces)
 
 
 def moved_by(mesh: Mesh, shift: Float64[np.ndarray, "sprays 3"]) -> Mesh:
     """Each spray moved as a whole."""
-    return mesh[0] + np.repeat(shift, 5, axis=0), mesh[1]
+    return Mesh(mesh.vertices + np.repeat(shift, 5, axis=0), mesh.faces)
 
 
 def middles(mesh: Mesh) -> Float64[np.ndarray, "sprays 3"]:
     """Middle of each spray."""
-    return np.asarray(mesh[0].reshape(-1, 5, 3).mean(axis=1))
+    return np.asarray(mesh.vertices.reshape(-1, 5, 3).mean(axis=1))

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from jaxtyping import Float64, Int64
-
-from scenegen.parts.vegetation.tubes import Mesh
+from scenegen.parts.vegetation.mesh import Mesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,17 +38,3 @@ class Grown:
     trunk: Mesh
     limbs: Mesh
     leaves: Mesh
-
-
-def merged(meshes: list[Mesh]) -> Mesh:
-    """Meshes one after the other."""
-    start = np.cumsum([0, *(len(v) for v, _ in meshes)])
-    vertices: Float64[np.ndarray, "vertices 3"] = np.concatenate([v for v, _ in meshes] or [np.zeros((0, 3))])
-    faces: Int64[np.ndarray, "faces 3"] = np.concatenate(
-        [f + s for (_, f), s in zip(meshes, start[:-1], strict=True)] or [np.zeros((0, 3), np.int64)]
-    )
-    return vertices, faces
-
-
-NOTHING: Mesh = (np.zeros((0, 3)), np.zeros((0, 3), np.int64))
-"""No triangles."""

@@ -13,6 +13,7 @@ from scenegen.geometry.part import LUMP_STANDOFF_M, Part
 from scenegen.geometry.template import Template, place
 from scenegen.parts.vegetation.branches import unit
 from scenegen.parts.vegetation.cards import FACES, sprays
+from scenegen.parts.vegetation.lumps import thrice
 from scenegen.parts.workshop import Workshop
 
 _PIECE_M = 1.7
@@ -89,10 +90,10 @@ def hedge_piece(rng: np.random.Generator) -> Template:
     length = rng.uniform(0.20, 0.36, _SPRAYS)
     heading = unit(spin + 0.35 * outward)
     base = np.column_stack([along, y, z]) - 0.35 * length[:, None] * heading
-    vertices, faces = sprays(base, heading, outward + 0.7 * np.roll(spin, 1, axis=0), length, 1.2)
-    vertices = np.clip(vertices, [-0.05, -0.5, 0.01], [1.05, 0.5, 1.0])
+    made = sprays(base, heading, outward + 0.7 * np.roll(spin, 1, axis=0), length, 1.2)
+    vertices = np.clip(made.vertices, [-0.05, -0.5, 0.01], [1.05, 0.5, 1.0])
     site = np.repeat(np.array([top, left, right])[side], FACES)
-    model.mesh(vertices, faces, 0, Semantic.SHRUB, np.repeat(site[:, None], 3, axis=1))
+    model.mesh(vertices, made.faces, 0, Semantic.SHRUB, thrice(site))
     return model.finish()
 
 
@@ -104,7 +105,7 @@ def _body(model: Modeller, top: int, left: int, right: int) -> None:
     quad = np.array([[4, 5, 6, 7], [2, 3, 7, 6], [0, 1, 5, 4], [3, 0, 4, 7], [1, 2, 6, 5]])
     site = np.repeat(np.array([top, left, right, left, right]), 2)
     faces = quad[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3)
-    corner_site = np.repeat(site[:, None], 3, axis=1)
+    corner_site = thrice(site)
     model.mesh(np.concatenate([low, high]), faces, 0, Semantic.SHRUB, corner_site)
 
 

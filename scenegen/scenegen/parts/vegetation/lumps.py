@@ -12,7 +12,7 @@ from jaxtyping import Float64, Int64
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import LUMP_STANDOFF_M
 from scenegen.parts.vegetation.branches import unit
-from scenegen.parts.vegetation.tubes import Mesh
+from scenegen.parts.vegetation.mesh import Mesh
 
 _OUTSIDE = 2e-3
 _FACING, _MOTTLE = 0.30, 0.16
@@ -60,8 +60,7 @@ def crown_sites(
     card_faces : int
         Consecutive faces that stay together.
     """
-    vertices, faces = leaves
-    corners = vertices[faces]
+    vertices, corners = leaves.vertices, leaves.corners()
     middle = corners.mean(axis=1).reshape(-1, card_faces, 3).mean(axis=1)
     normal = unit(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]))
     normal = unit(normal.reshape(-1, card_faces, 3).mean(axis=1))
@@ -78,7 +77,7 @@ def crown_sites(
 
 def wood_sites(wood: Mesh, directions: Float64[np.ndarray, "sites 3"]) -> Int64[np.ndarray, "faces"]:
     """Which direction each face of wood looks in: every branch has its own sunny side."""
-    corners = wood[0][wood[1]]
+    corners = wood.corners()
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return np.asarray(np.argmax(unit(normal) @ directions.T, axis=1))
 

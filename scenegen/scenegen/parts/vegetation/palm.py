@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from scenegen.parts.vegetation.branches import GOLDEN_RAD, Branches, sprout, unit
-from scenegen.parts.vegetation.growth import Grown, Plan, merged
+from scenegen.parts.vegetation.growth import Grown, Plan
+from scenegen.parts.vegetation.mesh import Mesh, merged
 from scenegen.parts.vegetation.species import Feather
-from scenegen.parts.vegetation.tubes import Mesh, tubes
+from scenegen.parts.vegetation.tubes import tubes
 
 _FOOT = -0.03
 _FULL_FACES = 1500
@@ -42,14 +43,14 @@ def _fronds(species: Feather, top: np.ndarray, count: int, rng: np.random.Genera
     """Rachises: the youngest upright, the oldest hanging; all arch under their weight."""
     age = (np.arange(count) + rng.uniform(0.0, 0.8, count)) / count
     turn = GOLDEN_RAD * np.arange(count) + rng.normal(0.0, 0.2, count)
-    rise = np.deg2rad(82.0 - 100.0 * age**1.1 + rng.normal(0.0, 6.0, count))
+    rise = np.deg2rad(74.0 - 112.0 * age**0.9 + rng.normal(0.0, 6.0, count))
     direction = np.column_stack([np.cos(turn) * np.cos(rise), np.sin(turn) * np.cos(rise), np.sin(rise)])
     length = (
-        1.22 * species.outline.radius * rng.uniform(0.85, 1.05, count) * (0.75 + 0.25 * np.sin(np.pi * age))
+        1.3 * species.outline.radius * rng.uniform(0.85, 1.05, count) * (0.75 + 0.25 * np.sin(np.pi * age))
     )
     thick = np.full(count, 0.12 * species.girth)
     start = top + 0.6 * species.girth * direction * np.array([1.0, 1.0, 0.5])
-    sag = -1.9 * rng.uniform(0.8, 1.2)
+    sag = -2.3 * rng.uniform(0.85, 1.15)
     return sprout(start, direction, length, (thick, 0.15 * thick), _NODES, sag, 0.02, rng)
 
 
@@ -63,13 +64,12 @@ def _leaflets(fronds: Branches, pairs: int, rng: np.random.Generator) -> Mesh:
     level = unit(np.cross(along, np.array([0.0, 0.0, 1.0])) + 1e-6)
     above = np.cross(level, along)
     reach = fronds.length()[frond]
-    long = reach * 0.36 * np.sin(np.pi * (0.12 + 0.82 * t)) ** 0.7 * rng.uniform(0.85, 1.15, len(t))
+    long = reach * 0.34 * np.sin(np.pi * (0.12 + 0.82 * t)) ** 0.7 * rng.uniform(0.85, 1.15, len(t))
     hang = rng.uniform(0.15, 0.7, len(t))[:, None]
     toward = unit(side[:, None] * level + 0.65 * along + 0.25 * above - hang * np.array([0.0, 0.0, 1.0]))
-    half = (0.42 / pairs * reach)[:, None] * along
+    half = (0.48 / pairs * reach)[:, None] * along
     tip = base + long[:, None] * toward
-    corners = np.stack([base - half, base + half, tip], axis=1)
-    return corners.reshape(-1, 3), np.arange(3 * len(t)).reshape(-1, 3)
+    return Mesh.of(np.stack([base - half, base + half, tip], axis=1))
 
 
 def _ribs(fronds: Branches) -> Mesh:
@@ -82,4 +82,4 @@ def _ribs(fronds: Branches) -> Mesh:
     k = 2 * np.arange(_NODES - 1)[:, None]
     faces = (k + np.array([0, 2, 3, 0, 3, 1])).reshape(-1, 3)
     shifted = faces[None] + strip.shape[1] * np.arange(len(points))[:, None, None]
-    return strip.reshape(-1, 3), shifted.reshape(-1, 3)
+    return Mesh(strip.reshape(-1, 3), shifted.reshape(-1, 3))

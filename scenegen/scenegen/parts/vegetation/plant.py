@@ -20,8 +20,10 @@ __all__ = ["SPECIES", "crown_radius_m", "hedges", "plant", "shrubs", "triangles"
 
 _CLASS_TOP_M = (6.0, 9.5, 14.0)
 """Upper ends of the size classes but the last: a spray of leaves has one size, so tall trees have more of them."""
-_FACES = (520, 900, 1650, 3000)
+_FACES = (640, 1000, 1700, 3000)
 """Triangles of a tree of each size class."""
+_AVERAGE_CROWN = 0.25
+"""Radius times length of an average crown, for a tree of unit height."""
 _COPIES_PER_FORM = (1, 15, 60)
 """From how many trees of one species and size there is a first, second and third form."""
 _WIDTH = (0.86, 1.0)
@@ -69,7 +71,7 @@ def plant(
         Its season decides how much foliage deciduous trees carry.
     rng : numpy.random.Generator
     detail : float
-        Scales the number of triangles: 520, 900, 1,650 and 3,000 for trees up to 6, 9.5, 14 m
+        Scales the number of triangles: 640, 1,000, 1,700 and 3,000 for trees up to 6, 9.5, 14 m
         and above.
 
     Returns
@@ -97,7 +99,9 @@ def plant(
         forms = int(np.searchsorted(_COPIES_PER_FORM, len(mine), side="right"))
         for form, grower in enumerate(child.spawn(forms)):
             some = mine[form::forms]
-            template = tree(kind, Plan(round(detail * _FACES[k]), _foliage(in_leaf, grower)), grower)
+            template = tree(
+                kind, Plan(round(detail * _share(kind) * _FACES[k]), _foliage(in_leaf, grower)), grower
+            )
             parts.append(
                 place(template, position[some], heading[some], scale[some], skins[some], owner[some])
             )
@@ -109,6 +113,12 @@ def _species(name: str) -> Species:
         return SPECIES[name]
     except KeyError:
         raise InputError(f"unknown species '{name}'{nearest(name, SPECIES)}") from None
+
+
+def _share(kind: Species) -> float:
+    """Triangles against an average tree: a wide crown needs more."""
+    outline = kind.growth.outline
+    return float(np.sqrt(outline.radius * (1.0 - outline.base) / _AVERAGE_CROWN))
 
 
 def _drawn(material: str, count: int, shop: Workshop, rng: np.random.Generator) -> Int64[np.ndarray, "count"]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Float64, Int64
 
 from scenegen.classes import Semantic
 from scenegen.geometry.modelling import Modeller
@@ -13,6 +13,7 @@ from scenegen.parts.vegetation.branches import GOLDEN_RAD, Branches, sprout, uni
 from scenegen.parts.vegetation.cards import FACES, sprays
 from scenegen.parts.vegetation.foliage import leaf_fraction
 from scenegen.parts.vegetation.lumps import DOWN, UP, crown_sites, ring, supports, thrice, wood_sites
+from scenegen.parts.vegetation.mesh import Mesh, merged
 from scenegen.parts.vegetation.tubes import tubes
 from scenegen.parts.workshop import Workshop
 
@@ -79,23 +80,30 @@ def shrub(in_leaf: float, rng: np.random.Generator) -> Template:
     stems = _stems(rng)
     model = Modeller()
     if in_leaf < _BARE:
-        shoots = _shoots(stems, rng)
-        wood = [tubes(b, 3, True) for b in (stems, shoots)]
-        top = max(v[:, 2].max() for v, _ in wood)
-        for vertices, faces in wood:
-            _fit(vertices, top)
-            first = supports(model, vertices, _WOOD_SITES)
-            site = first + wood_sites((vertices, faces), _WOOD_SITES)
-            model.mesh(vertices, faces, BARK, Semantic.SHRUB, thrice(site))
-        return model.finish()
-    vertices, faces = tubes(stems, 3, True)
-    _fit(vertices, 1.0)
-    first = supports(model, vertices.mean(axis=0)[None], UP)
-    model.mesh(vertices, faces, BARK, Semantic.SHRUB, thrice(np.full(len(faces), first)))
-    leaves = _leaves(in_leaf, rng)
-    first = supports(model, leaves[0], _SITES)
-    model.mesh(*leaves, LEAVES, Semantic.SHRUB, thrice(first + crown_sites(leaves, _SITES, rng, FACES)))
+        wood = _boxed(merged([tubes(b, 3, True) for b in (stems, _shoots(stems, rng))]), True)
+        first = supports(model, wood.vertices, _WOOD_SITES)
+        _add(model, wood, BARK, first + wood_sites(wood, _WOOD_SITES))
+    else:
+        wood, leaves = _boxed(tubes(stems, 3, True), False), _leaves(in_leaf, rng)
+        first = supports(model, wood.vertices.mean(axis=0)[None], UP)
+        _add(model, wood, BARK, np.full(len(wood), first))
+        first = supports(model, leaves.vertices, _SITES)
+        _add(model, leaves, LEAVES, first + crown_sites(leaves, _SITES, rng, FACES))
     return model.finish()
+
+
+def _add(model: Modeller, mesh: Mesh, slot: int, site: Int64[np.ndarray, "faces"]) -> None:
+    model.mesh(mesh.vertices, mesh.faces, slot, Semantic.SHRUB, thrice(site))
+
+
+def _boxed(wood: Mesh, fills: bool) -> Mesh:
+    """Wood inside the box, reaching its top if it has to fill it; what is in the ground stays there."""
+    vertices = wood.vertices.copy()
+    above, top = vertices[:, 2] > 0.0, vertices[:, 2].max()
+    vertices[above, 2] /= top if fills else max(top / 0.9, 1.0)
+    reach = np.abs(vertices[:, :2]).max()
+    vertices[:, :2] *= min(1.0, 0.5 / reach)
+    return Mesh(vertices, wood.faces)
 
 
 def _stems(rng: np.random.Generator) -> Branches:
@@ -118,7 +126,7 @@ def _shoots(stems: Branches, rng: np.random.Generator) -> Branches:
     return sprout(start, direction, length, (0.7 * thick, 0.2 * thick), 2, 0.0, 0.0, rng)
 
 
-def _leaves(in_leaf: float, rng: np.random.Generator) -> tuple[Float64[np.ndarray, "vertices 3"], np.ndarray]:
+def _leaves(in_leaf: float, rng: np.random.Generator) -> Mesh:
     """Sprays on a lumpy dome and inside it."""
     count = max(12, round(in_leaf * _SPRAYS))
     rank = (np.arange(count) + rng.uniform(size=count)) / count
@@ -131,16 +139,9 @@ def _leaves(in_leaf: float, rng: np.random.Generator) -> tuple[Float64[np.ndarra
     length = rng.uniform(0.22, 0.40, count)
     facing = shell + 0.7 * unit(rng.normal(size=(count, 3)))
     heading = unit(0.9 * spin + 0.5 * shell + np.array([0.0, 0.0, 0.35]))
-    vertices, faces = sprays(base - 0.25 * length[:, None] * heading, heading, facing, length, 1.3)
-    reach = np.abs(vertices[:, :2]).max()
-    vertices[:, :2] *= 0.5 / reach
+    made = sprays(base - 0.25 * length[:, None] * heading, heading, facing, length, 1.3)
+    vertices = made.vertices.copy()
+    vertices[:, :2] *= 0.5 / np.abs(vertices[:, :2]).max()
     low, high = vertices[:, 2].min(), vertices[:, 2].max()
     vertices[:, 2] = 0.01 + 0.99 * (vertices[:, 2] - low) / (high - low)
-    return vertices, faces
-
-
-def _fit(vertices: Float64[np.ndarray, "vertices 3"], top: float) -> None:
-    """Scale wood in place into the unit box; its foot stays."""
-    above = vertices[:, 2] > 0.0
-    vertices[above, 2] *= 1.0 / max(top, 1.0) if top <= 1.0 else 1.0 / top
-    vertices[:, :2] = np.clip(vertices[:, :2], -0.5, 0.5)
+    return Mesh(vertices, made.faces)

@@ -238,7 +238,7 @@ _ALL = (
         Broadleaf(
             Outline(base=0.03, widest=0.33, roundness=1.8, radius=0.085),
             Wood(1, 0.014, 0.97, 26, 4, 2, (25.0, 12.0), 22.0, 0.45, 0.45, 0.05),
-            Leaves(cover=10.0, slender=2.2, droop=-0.5, clumped=0.1),
+            Leaves(cover=10.0, slender=2.0, droop=0.1, clumped=0.1),
         ),
         evergreen=True,
     ),
@@ -246,12 +246,12 @@ _ALL = (
         "olive",
         Broadleaf(
             Outline(base=0.22, widest=0.45, roundness=2.2, radius=0.50),
-            Wood(3, 0.040, 0.55, 11, 6, 4, (75.0, 15.0), 45.0, 0.20, -0.15, 0.42),
-            Leaves(cover=6.4, slender=2.2, droop=0.2, clumped=0.4),
+            Wood(2, 0.042, 0.58, 14, 6, 4, (78.0, 12.0), 48.0, 0.25, -0.05, 0.30),
+            Leaves(cover=3.8, slender=1.3, droop=0.15, clumped=0.1),
         ),
         evergreen=True,
     ),
-    Species("palm", Feather(Outline(0.6, 0.5, 2.0, 0.30), 0.022, 22, 13, 0.10), evergreen=True),
+    Species("palm", Feather(Outline(0.6, 0.5, 2.0, 0.30), 0.021, 30, 15, 0.12), evergreen=True),
 )  # fmt: skip
 
 SPECIES: Mapping[str, Species] = MappingProxyType({s.name: s for s in _ALL})

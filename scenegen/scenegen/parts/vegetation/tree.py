@@ -21,8 +21,8 @@ from scenegen.parts.vegetation.lumps import (
     thrice,
     wood_sites,
 )
+from scenegen.parts.vegetation.mesh import Mesh
 from scenegen.parts.vegetation.species import Broadleaf, Feather, Species
-from scenegen.parts.vegetation.tubes import Mesh
 
 BARK, LEAVES = 0, 1
 """Surface slots of a tree."""
@@ -43,16 +43,16 @@ def tree(species: Species, plan: Plan, rng: np.random.Generator) -> Template:
     """
     grown = _sized(_grow(species, plan, rng), species.growth.outline.radius * rng.uniform(0.9, 1.0))
     model = Modeller()
-    if len(grown.leaves[1]):
+    if len(grown.leaves):
         _wood_in_leaf(model, grown)
-        first = supports(model, grown.leaves[0], CROWN)
+        first = supports(model, grown.leaves.vertices, CROWN)
         together = FACES if isinstance(species.growth, Broadleaf) else 1
         site = first + crown_sites(grown.leaves, CROWN, rng, together)
-        model.mesh(*grown.leaves, LEAVES, Semantic.TREE, thrice(site))
+        _add(model, grown.leaves, LEAVES, site)
     else:
-        model.mesh(*grown.trunk, BARK, Semantic.TREE, thrice(_trunk_sites(model, grown.trunk)))
-        first = supports(model, grown.limbs[0], BARE)
-        model.mesh(*grown.limbs, BARK, Semantic.TREE, thrice(first + wood_sites(grown.limbs, BARE)))
+        _add(model, grown.trunk, BARK, _trunk_sites(model, grown.trunk))
+        first = supports(model, grown.limbs.vertices, BARE)
+        _add(model, grown.limbs, BARK, first + wood_sites(grown.limbs, BARE))
     return model.finish()
 
 
@@ -67,32 +67,36 @@ def _grow(species: Species, plan: Plan, rng: np.random.Generator) -> Grown:
 
 def _sized(grown: Grown, radius: float) -> Grown:
     """Stretched so that it ends at height 1 and reaches just so far; its foot stays where it is."""
-    everything = np.concatenate([grown.trunk[0], grown.limbs[0], grown.leaves[0]])
+    everything = np.concatenate([m.vertices for m in (grown.trunk, grown.limbs, grown.leaves)])
     top = everything[:, 2].max()
     wide = radius / np.hypot(everything[:, 0], everything[:, 1]).max()
 
     def stretched(mesh: Mesh) -> Mesh:
-        vertices = mesh[0] * np.array([wide, wide, 1.0])
+        vertices = mesh.vertices * np.array([wide, wide, 1.0])
         vertices[:, 2] = np.where(vertices[:, 2] > 0.0, vertices[:, 2] / top, vertices[:, 2])
-        return vertices, mesh[1]
+        return Mesh(vertices, mesh.faces)
 
     return Grown(stretched(grown.trunk), stretched(grown.limbs), stretched(grown.leaves))
 
 
 def _trunk_sites(model: Modeller, trunk: Mesh) -> Int64[np.ndarray, "faces"]:
     """Add sites around the trunk below its crown; returns the one of each face."""
-    vertices = trunk[0]
+    vertices = trunk.vertices
     near = np.argsort(np.abs(vertices[:, 2] - _TRUNK_SITE_HEIGHT), kind="stable")[:_TRUNK_RING]
     return supports(model, vertices[near], _TRUNK_SIDES) + wood_sites(trunk, _TRUNK_SIDES)
 
 
 def _wood_in_leaf(model: Modeller, grown: Grown) -> None:
     """The free trunk has sides; wood in the crown has one site: what is in the shade sees leaves, and ground below."""
-    crown_base = np.quantile(grown.leaves[0][:, 2], _CROWN_BASE_QUANTILE)
+    crown_base = np.quantile(grown.leaves.vertices[:, 2], _CROWN_BASE_QUANTILE)
     sides = _trunk_sites(model, grown.trunk)
-    wood = grown.limbs[0]
+    wood = grown.limbs.vertices
     middle = wood[np.argmin(((wood - wood.mean(axis=0)) ** 2).sum(axis=1))]
     shaded = supports(model, middle[None], DOWN)
-    high = grown.trunk[0][grown.trunk[1]][..., 2].mean(axis=1) > crown_base
-    model.mesh(*grown.trunk, BARK, Semantic.TREE, thrice(np.where(high, shaded, sides)))
-    model.mesh(*grown.limbs, BARK, Semantic.TREE, thrice(np.full(len(grown.limbs[1]), shaded)))
+    high = grown.trunk.corners()[..., 2].mean(axis=1) > crown_base
+    _add(model, grown.trunk, BARK, np.where(high, shaded, sides))
+    _add(model, grown.limbs, BARK, np.full(len(grown.limbs), shaded))
+
+
+def _add(model: Modeller, mesh: Mesh, slot: int, site: Int64[np.ndarray, "faces"]) -> None:
+    model.mesh(mesh.vertices, mesh.faces, slot, Semantic.TREE, thrice(site))

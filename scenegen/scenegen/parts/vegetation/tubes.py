@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from jaxtyping import Float64, Int64
+from jaxtyping import Int64
 
 from scenegen.parts.vegetation.branches import Branches, across, unit
-
-Mesh = tuple[Float64[np.ndarray, "vertices 3"], Int64[np.ndarray, "faces 3"]]
-"""Vertices and faces, counter-clockwise from outside."""
+from scenegen.parts.vegetation.mesh import Mesh
 
 
 def tubes(branches: Branches, sides: int, pointed: bool) -> Mesh:
@@ -40,7 +38,7 @@ def tubes(branches: Branches, sides: int, pointed: bool) -> Mesh:
         faces = np.concatenate([faces, tip])
     per = vertices.shape[1]
     shifted = faces[None] + per * np.arange(count)[:, None, None]
-    return vertices.reshape(-1, 3), shifted.reshape(-1, 3)
+    return Mesh(vertices.reshape(-1, 3), shifted.reshape(-1, 3))
 
 
 def _sides(hoops: int, sides: int) -> Int64[np.ndarray, "faces 3"]:

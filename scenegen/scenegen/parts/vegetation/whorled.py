@@ -7,9 +7,10 @@ from jaxtyping import Float64
 
 from scenegen.parts.vegetation.branches import Branches, sprout, unit
 from scenegen.parts.vegetation.growth import Grown, Plan
+from scenegen.parts.vegetation.mesh import Mesh
 from scenegen.parts.vegetation.outline import half_width
 from scenegen.parts.vegetation.species import Whorled
-from scenegen.parts.vegetation.tubes import Mesh, tubes
+from scenegen.parts.vegetation.tubes import tubes
 
 _FULL_FACES = 2400
 _FOOT = -0.03
@@ -28,7 +29,7 @@ def grow(species: Whorled, plan: Plan, rng: np.random.Generator) -> Grown:
     boughs = _boughs(species, trunk, whorls, each, rng)
     inner = Branches(boughs.points[:, :2], boughs.radius[:, :2])
     body, limbs = tubes(trunk, 5, True), tubes(inner, 3, True)
-    left = plan.faces - len(body[1]) - len(limbs[1])
+    left = plan.faces - len(body) - len(limbs)
     return Grown(body, limbs, _needles(species, boughs, whorls, left, rng))
 
 
@@ -69,8 +70,7 @@ def _needles(species: Whorled, boughs: Branches, whorls: int, faces: int, rng: n
     flat[:, 2] = np.clip(flat[:, 2], 0.01, 0.995)
     reach = np.maximum(1.05 * half_width(species.outline, flat[:, 2]), 0.012)
     flat[:, :2] *= np.minimum(1.0, reach / np.maximum(np.hypot(*flat[:, :2].T), 1e-9))[:, None]
-    flat = np.concatenate([flat, _leader()])
-    return flat, np.arange(len(flat)).reshape(-1, 3)
+    return Mesh.of(np.concatenate([flat, _leader()]).reshape(-1, 3, 3))
 
 
 def _stations(
