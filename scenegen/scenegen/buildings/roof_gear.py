@@ -40,9 +40,9 @@ def _air_handler() -> Template:
     _lid(model, 0.85)
     for x in (-0.25, 0.25):
         model.tube(
-            np.array([x, 0, 0.8]), np.array([x, 0, 0.93]), 0.17, 0.17, 0, Semantic.ROOF_EQUIPMENT, sides=8
+            np.array([x, 0, 0.8]), np.array([x, 0, 0.89]), 0.17, 0.17, 0, Semantic.ROOF_EQUIPMENT, sides=8
         )
-        _disc(model, x, 0.91)
+        _disc(model, x, 0.88)
     return model.finish()
 
 

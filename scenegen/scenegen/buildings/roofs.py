@@ -20,8 +20,8 @@ from scenegen.geometry.scatter import contact_points
 PARAPET_WIDTH_M = 0.28
 MANSARD_RUN_M = 1.1
 _TUCK_M, _NEEDLE_M = 0.02, 0.03
-_FLAT_M, _EDGE_M, _SLOPE_M = 3.6, 2.4, 3.5
-"""Spacing of sites on flat roofs, along their parapets, and on slopes."""
+_FLAT_M, _EDGE_M, _SLOPE_M, _EAVES_SITES_M = 3.6, 2.4, 4.4, 10.0
+"""Spacing of sites on flat roofs, along their parapets, on slopes and along eaves."""
 _PARAPET_ROW, _GEAR_ROW = (2.3, -1.2), (1.8, 0.1)
 """Spacing and distance of the rows behind parapets and around what stands on roofs: there the view changes."""
 _EAVES_M, _VERGE_M, _THICKNESS_M = 0.45, 0.3, 0.18
@@ -133,7 +133,7 @@ def sloped_roofs(volumes: Storeys) -> Part:
             thin.append((edges, style.roof, roof, building.object))
             if len(gables):
                 tops.append((gables, style.wall, int(Semantic.WALL), building.object))
-    return concatenate([_patched(tops, _SLOPE_M, False), _patched(thin, 6.0, True)])
+    return concatenate([_patched(tops, _SLOPE_M, False), _patched(thin, _EAVES_SITES_M, True)])
 
 
 def _patched(items: list[tuple[np.ndarray, int, int, int]], spacing_m: float, lumped: bool) -> Part:

@@ -22,7 +22,7 @@ BLANK, WINDOW, DOOR = 0, 1, 2
 """What fills a cell of the window grid."""
 
 _PLINTH_M = 0.6
-_REVEALS_PER_SITE = (4, 3)
+_REVEALS_PER_SITE = (5, 4)
 """Window columns and storeys that share the sites of their reveals."""
 _DOOR_LOWER_M, _DOOR_UPPER = 0.3, 0.7
 """Height of the two sites of a door: above the floor, and in heights of its head."""
