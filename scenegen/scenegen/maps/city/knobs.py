@@ -74,7 +74,10 @@ class CityKnobs(Section):
     """Parked cars along 100 m of kerb."""
 
     moving_cars_per_100_m: Annotated[Span, AfterValidator(_within(0.0, 10.0))] = (0.3, 1.2)
-    """Cars in each lane, per 100 m of street."""
+    """Cars that drive in each lane, per 100 m of street."""
+
+    people_per_100_m: Annotated[Span, AfterValidator(_within(0.0, 10.0))] = (0.2, 1.0)
+    """People walking along 100 m of sidewalk."""
 
     relief_m: Annotated[Span, AfterValidator(_within(0.0, 3.0))] = (0.4, 1.8)
     """Amplitude of the terrain [m]."""
