@@ -14,6 +14,7 @@ from scenegen.maps.city.districts import lay_out
 from scenegen.maps.city.furniture import build_furniture
 from scenegen.maps.city.greenery import build_greenery
 from scenegen.maps.city.knobs import CityKnobs
+from scenegen.maps.city.motion import plan_motion
 from scenegen.maps.city.outskirts import far_objects, plan_far
 from scenegen.maps.city.park import plan_park
 from scenegen.maps.city.streets import draw_streets
@@ -38,8 +39,8 @@ def build_city(knobs: CityKnobs, season: Season, rng: np.random.Generator) -> Wo
     rng : numpy.random.Generator
         The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
     """
-    own, streets, hills, skins, lots, parks_rng, ground, walls, gear_rng, cars_rng, posts_rng, green, far = (
-        rng.spawn(13)
+    own, streets, hills, skins, lots, parks_rng, ground, walls, gear_rng, cars_rng, posts_rng, green, far, on = (
+        rng.spawn(14)
     )
     extent = own.uniform(*knobs.extent_m)
     palette, builder = PaletteBuilder(skins), GeometryBuilder()
@@ -59,6 +60,7 @@ def build_city(knobs: CityKnobs, season: Season, rng: np.random.Generator) -> Wo
     furniture, posts = build_furniture(plan, parks, shop, posts_rng)
     trees, tree_count = build_greenery(layout, parks, posts, shop, green)
     builder.add(*cars, *furniture, *trees, *far_objects(land, shop, far))
+    movers = plan_motion(plan, shop, on)
     merged = builder.merge()
     half = _inner_half(plan.outline)
     return World(
@@ -80,7 +82,10 @@ def build_city(knobs: CityKnobs, season: Season, rng: np.random.Generator) -> Wo
             ("cars", len(traffic.spots)),
             ("lamps and signs", len(posts)),
             ("trees", tree_count),
+            ("vehicles that drive", sum(m.kind != "person" for m in movers)),
+            ("people who walk", sum(m.kind == "person" for m in movers)),
         ),
+        movers=movers,
     )
 
 
