@@ -19,7 +19,7 @@ from scenegen.geometry.part import Part, concatenate
 from scenegen.geometry.patch import patches
 from scenegen.geometry.rings import inset, strip
 
-_BLANK_SPACING_M = 5.5
+_BLANK_SPACING_M = 4.0
 _BAND_M = 0.14
 _FIRST_SITE_M = 0.15
 _PANES_PER_SITE = (2, 2)
