@@ -13,6 +13,7 @@ from scenegen.foundation.section import Count, Section
 from scenegen.maps.city.knobs import CityKnobs
 from scenegen.maps.coastline.knobs import CoastlineKnobs
 from scenegen.maps.field.knobs import FieldKnobs
+from scenegen.maps.neighborhood.knobs import NeighborhoodKnobs
 from scenegen.maps.own_scene.knobs import OwnScene
 from scenegen.maps.registry import MAPS
 from scenegen_datasets.job import is_map_name
@@ -66,6 +67,7 @@ class Recipe(Section):
     sensor: SensorKnobs = SensorKnobs()
     city: CityKnobs = CityKnobs()
     coastline: CoastlineKnobs = CoastlineKnobs()
+    neighborhood: NeighborhoodKnobs = NeighborhoodKnobs()
     field: FieldKnobs = FieldKnobs()
 
     @field_validator("map")

@@ -18,6 +18,8 @@ from scenegen.maps.coastline.coastline import build_coastline
 from scenegen.maps.coastline.knobs import CoastlineKnobs
 from scenegen.maps.field.field import build_field
 from scenegen.maps.field.knobs import FieldKnobs
+from scenegen.maps.neighborhood.knobs import NeighborhoodKnobs
+from scenegen.maps.neighborhood.neighborhood import build_neighborhood
 from scenegen.maps.own_scene.knobs import OwnScene
 from scenegen.maps.own_scene.own_scene import build_own_scene
 from scenegen.world import World
@@ -52,6 +54,10 @@ _FAMILIES = (
     MapFamily(
         "coastline", "cliffs, dunes and beach by a wavy sea, with pier, breakwater and lighthouse", CoastlineKnobs,
         build_coastline,
+    ),
+    MapFamily(
+        "neighborhood", "a suburb: winding streets, houses with gardens, pools and sheds, trees, utility poles",
+        NeighborhoodKnobs, build_neighborhood,
     ),
     MapFamily(
         "field", "a football ground in rolling farmland: pitches, stands, floodlights, nets", FieldKnobs, build_field
