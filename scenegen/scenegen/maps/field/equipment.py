@@ -9,6 +9,7 @@ import numpy as np
 from scenegen.geometry.part import Part
 from scenegen.maps.field.country import Country
 from scenegen.maps.field.fences import build_fences
+from scenegen.maps.field.furniture import build_furniture
 from scenegen.maps.field.goals import build_benches, build_corner_flags, build_goals
 from scenegen.maps.field.grounds import Grounds
 from scenegen.maps.field.masts import build_flags, build_masts, build_power_line
@@ -39,7 +40,7 @@ def build_equipment(
     grounds: Grounds, country: Country, half_m: float, shop: FieldWorkshop, rng: np.random.Generator
 ) -> Equipment:
     """Put up the equipment of the grounds, the power lines and the fences."""
-    sport, posts, fences = rng.spawn(3)
+    sport, posts, fences, small = rng.spawn(4)
     parts: list[Part] = []
     seats = []
     for stand in grounds.stands:
@@ -55,4 +56,6 @@ def build_equipment(
     if country.pylons is not None:
         parts += build_pylons(country.pylons, shop, posts)
     parts += build_fences(grounds, country, shop, fences)
-    return Equipment(tuple(parts), tuple(seats), np.concatenate([mast_feet, pole_feet]))
+    furniture, feet = build_furniture(grounds, shop, small)
+    parts += furniture
+    return Equipment(tuple(parts), tuple(seats), np.concatenate([mast_feet, pole_feet, feet]))

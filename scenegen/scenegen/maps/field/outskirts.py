@@ -21,8 +21,8 @@ _WALLS = ("stucco_render", "brick_red", "stucco_render", "wood_siding")
 _ROOFS = ("clay_roof_tile", "clay_roof_tile", "slate_roof", "metal_roof_painted_mid")
 _FINE_M = 750.0
 _BEYOND_M, _EDGE_M = 42.0, 160.0
-_SUNK = 8e-4
-"""How deep masses of trees stand in the relief per metre of distance: the mesh of the ground is coarse there."""
+_CELLS_M = ((250.0, 600.0, 1200.0), (4.0, 16.0, 38.0))
+"""About half the size of the ground's triangles [m] at distances from the origin [m]."""
 _LEVELS_M = (0.0, 450.0, 700.0, 1100.0, 1700.0, 1e9)
 
 
@@ -103,8 +103,7 @@ def _groves(spots: np.ndarray, shop: FieldWorkshop, rng: np.random.Generator) ->
     """Masses of trees, finer ones nearby."""
     leaves = np.array(shop.palette.variants("tree_crown"))
     skin = leaves[rng.integers(len(leaves), size=len(spots))][:, None]
-    sunk = _SUNK * np.linalg.norm(spots[:, :2], axis=1)
-    position = np.column_stack([spots[:, :2], shop.relief(spots[:, :2]) - sunk])
+    position = np.column_stack([spots[:, :2], _on_mesh(spots[:, :2], shop)])
     scale, heading = spots[:, [2, 2, 3]], rng.uniform(0.0, 2 * np.pi, len(spots))
     owner = shop.builder.new_objects(len(spots)) + np.arange(len(spots))
     near = np.linalg.norm(spots[:, :2], axis=1) < _FINE_M
@@ -112,6 +111,14 @@ def _groves(spots: np.ndarray, shop: FieldWorkshop, rng: np.random.Generator) ->
         place(thicket(rng, fine), position[k], heading[k], scale[k], skin[k], owner[k])
         for fine, k in ((True, near), (False, ~near))
     ]
+
+
+def _on_mesh(xy: np.ndarray, shop: FieldWorkshop) -> np.ndarray:
+    """Height [m] of the ground's mesh or just below: its coarse triangles cut across hilltops far away."""
+    reach = np.interp(np.linalg.norm(xy, axis=1), *_CELLS_M)[:, None]
+    angle = 2 * np.pi * np.arange(6) / 6
+    around = [shop.relief(xy + reach * np.array([np.cos(a), np.sin(a)])) for a in angle]
+    return np.asarray(np.minimum(shop.relief(xy), np.mean(around, axis=0)))
 
 
 def _farms(
@@ -137,7 +144,7 @@ def _farms(
     wall = [shop.palette.pick(_WALLS[int(k)], rng) for k in rng.integers(0, 4, len(xy))]
     roof = [shop.palette.pick(_ROOFS[int(k)], rng) for k in rng.integers(0, 4, len(xy))]
     height = np.where(barn, rng.uniform(5.0, 9.0, len(xy)), rng.uniform(5.5, 10.0, len(xy)))
-    base = np.column_stack([xy, shop.relief(xy) - 1.2])
+    base = np.column_stack([xy, _on_mesh(xy, shop) - 1.2])
     owner = shop.builder.new_objects(len(xy)) + np.arange(len(xy))
     scale = np.column_stack([length, width, height + 1.2])
     part = place(gabled(), base, heading, scale, np.column_stack([wall, roof]).astype(np.int64), owner)
