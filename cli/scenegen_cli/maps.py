@@ -18,10 +18,13 @@ from scenegen_datasets.resolve import leaves
 
 @dataclass(frozen=True)
 class Maps:
-    """List the maps, the knobs of one, or look at one of its worlds. Takes all recipe keys as flags, such as --seed."""
+    """List the maps, the knobs of one, the parts of a scene of your own, or look at one of their worlds.
+
+    Takes all recipe keys as flags, such as --seed and --climate.hour.
+    """
 
     map: Annotated[str, tyro.conf.Positional] = ""
-    """Name of a map; without it, all are listed."""
+    """Name of a map, or path of a scene file; without it, all maps are listed."""
     world: int = 0
     """Which of the map's worlds."""
     recipe: Path | None = None
@@ -52,6 +55,12 @@ def run(arguments: Sequence[str]) -> int:
         from scenegen_cli.look import look
 
         return look(command, flags)
+    from scenegen.maps.own_scene.identity import is_scene_path
+
+    if is_scene_path(command.map):
+        from scenegen_cli.parts import list_parts
+
+        return list_parts(Path(command.map), as_json=command.json)
     return _list_knobs(command)
 
 

@@ -91,14 +91,11 @@ def meanings(
     found = []
     unmapped: dict[str, None] = {}
     for part in parts:
-        made_of = _lookup(part, sidecar.materials, sidecar.default_material)
-        if made_of is None:
+        meaning = meaning_of(part, sidecar)
+        if meaning is None:
             unmapped[part.shown] = None
-            continue
-        usual = _USUAL_CLASS.get(made_of, Semantic.OTHER) if isinstance(made_of, str) else Semantic.OTHER
-        semantic = _lookup(part, sidecar.classes, usual)
-        assert semantic is not None
-        found.append(Meaning(made_of, semantic))
+        else:
+            found.append(meaning)
     if unmapped:
         place = where or scene.with_suffix(".yaml")
         raise InputError(
@@ -106,6 +103,17 @@ def meanings(
             "or set 'default_material'"
         )
     return tuple(found)
+
+
+def meaning_of(part: Names, sidecar: Sidecar) -> Meaning | None:
+    """Material and class of one part; None if the sidecar gives it no material."""
+    made_of = _lookup(part, sidecar.materials, sidecar.default_material)
+    if made_of is None:
+        return None
+    usual = _USUAL_CLASS.get(made_of, Semantic.OTHER) if isinstance(made_of, str) else Semantic.OTHER
+    semantic = _lookup(part, sidecar.classes, usual)
+    assert semantic is not None
+    return Meaning(made_of, semantic)
 
 
 def _lookup(part: Names, table: Mapping[str, Value], otherwise: Value | None) -> Value | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -233,8 +233,3 @@ def _counts(raw: RawScene) -> tuple[tuple[str, int], ...]:
         else ()
     )
     return (("parts", len(raw.parts)), ("triangles in the file", len(raw.faces)), *raw.repairs, *shift)
-
-
-def part_triangles(raw: RawScene) -> Sequence[int]:
-    """Triangles of each part, for listings."""
-    return [int(n) for n in np.bincount(raw.part, minlength=len(raw.parts))]
