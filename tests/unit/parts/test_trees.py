@@ -45,7 +45,9 @@ def gap_share(template, species: Species, seed: int) -> float:
 def test_height_is_exact_and_nothing_leaves_the_crown_radius(workshop, row, name, month):
     height = np.linspace(4.0, 19.0, 9)
     position = row(9) + np.array([0.0, 0.0, 2.0])
-    parts = plant(name, position, height, workshop(season=MONTHS[month]), np.random.default_rng(1))
+    shop = workshop(season=MONTHS[month])
+    parts = plant(name, position, height, shop, np.random.default_rng(1))
+    barks = shop.palette.variants("bark_trunk")
     radius = crown_radius_m(name, height)
     seen = np.zeros(9, bool)
     for part in parts:
@@ -53,9 +55,11 @@ def test_height_is_exact_and_nothing_leaves_the_crown_radius(workshop, row, name
             k = instance - 1
             vertices = part.vertices[part.faces[part.object == instance]].reshape(-1, 3) - position[k]
             assert vertices[:, 2].max() == pytest.approx(height[k], abs=1e-9)
-            assert -0.06 * height[k] < vertices[:, 2].min() < -0.02 * height[k]
+            assert -0.05 * height[k] < vertices[:, 2].min() < -0.02 * height[k]
             assert 0.7 * radius[k] < np.hypot(vertices[:, 0], vertices[:, 1]).max() <= radius[k] + 1e-9
-            low = vertices[vertices[:, 2] < 0.02 * height[k]]
+            leaf = np.repeat(~np.isin(part.surface[part.object == instance], barks), 3)
+            assert not leaf.any() or vertices[leaf, 2].min() > 0.0
+            low = vertices[vertices[:, 2] < 0.005 * height[k]]
             assert np.hypot(low[:, 0], low[:, 1]).max() < 0.11 * height[k]
             seen[k] = True
     assert seen.all()

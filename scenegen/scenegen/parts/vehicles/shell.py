@@ -11,11 +11,13 @@ from scenegen.parts.skin import Skin
 from scenegen.parts.vehicles.shapes import Shape
 from scenegen.parts.vehicles.slots import BONNET, GLASS, PAINT, UNDERSIDE
 
-_HALF = 4
-"""Points of half a ring: sill, widest line, belt, edge of the roof."""
+_HALF = 3
+"""Points of half a ring: sill, belt, edge of the roof. A crease between the first two would not show in the heat."""
 _RING = 2 * _HALF
 _ARCH_GAP_M = 0.06
-_ARCH_ANGLES = np.deg2rad([25.0, 65.0, 115.0, 155.0])
+_LEAST_STEP_M = 0.09
+"""Stations inside an arch that stand nearer than this to another are left out."""
+_ARCH_ANGLES = np.deg2rad([32.0, 90.0, 148.0])
 
 
 def shell(skin: Skin, shape: Shape, shift_m: float = 0.0) -> None:
@@ -37,13 +39,13 @@ def shell(skin: Skin, shape: Shape, shift_m: float = 0.0) -> None:
 
 def _stations(shape: Shape) -> np.ndarray:
     """Where rings stand: ends, cabin, pillars, arches."""
-    half = shape.length_m / 2
-    rows = [np.array([-half, -half + 0.1, half - 0.12, half]), np.array(shape.cabin)]
-    rows.append(np.array([*shape.glazed, 0.5 * (shape.cabin[2] + shape.cabin[3])]))
-    rows += [np.array([p - 0.05, p + 0.05]) for p in shape.pillars]
-    reach = shape.wheel_m + _ARCH_GAP_M
-    rows += [axle + reach * np.array([-1.02, *-np.cos(_ARCH_ANGLES), 1.02]) for axle in shape.axles]
-    x = np.unique(np.round(np.concatenate(rows), 4))
+    half, reach = shape.length_m / 2, shape.wheel_m + _ARCH_GAP_M
+    pillars = [p + side for p in shape.pillars for side in (-0.05, 0.05)]
+    arches = [axle + side * 1.02 * reach for axle in shape.axles for side in (-1.0, 1.0)]
+    fixed = np.array([-half, -half + 0.1, half - 0.12, half, *shape.cabin, *shape.glazed, *pillars, *arches])
+    inner = np.concatenate([axle - reach * np.cos(_ARCH_ANGLES) for axle in shape.axles])
+    apart = np.abs(inner[:, None] - fixed).min(axis=1) > _LEAST_STEP_M
+    x = np.unique(np.round(np.concatenate([fixed, inner[apart]]), 4))
     x = x[(x >= -half) & (x <= half)]
     return np.asarray(x[np.append(np.diff(x) > 0.012, True)])
 
@@ -59,12 +61,11 @@ def _rings(shape: Shape, x: np.ndarray) -> np.ndarray:
     top = np.where((x > foot) & (x < screen), top, 0.0)
     roof = belt + 0.02 + top * (shape.height_m - 0.04 - belt)
     bottom = _bottom(shape, x)
-    waist = np.maximum(0.62 * shape.belt_m, bottom + 0.05)
     taper = np.clip((np.abs(x) - half + 0.75) / 0.75, 0.0, 1.0) ** 2
     wide = shape.width_m / 2 - shape.rounding_m * taper
     edge = np.where(top > 0, wide - 0.03 - shape.tuck_m * top, wide - 0.16 * wide)
-    y = np.stack([wide - 0.03, wide, wide - 0.03, np.minimum(edge, wide - 0.04)], axis=1)
-    z = np.stack([bottom, waist, belt, roof + 0.02], axis=1)
+    y = np.stack([wide, wide - 0.03, np.minimum(edge, wide - 0.04)], axis=1)
+    z = np.stack([bottom, belt, roof + 0.02], axis=1)
     right = np.stack([np.repeat(x[:, None], _HALF, axis=1), -y, z], axis=2)
     left = right[:, ::-1] * np.array([1.0, -1.0, 1.0])
     return np.concatenate([right, left], axis=1)
@@ -82,11 +83,11 @@ def _bottom(shape: Shape, x: np.ndarray) -> np.ndarray:
 
 
 def _slot(shape: Shape, x: float, band: int) -> int:
-    """Slot of a cell by its place along the vehicle and its band: lower side, upper side, window, top."""
+    """Slot of a cell by its place along the vehicle and its band: side, window, top."""
     foot, back, front, screen = shape.cabin
-    if band < 2:
+    if band == 0:
         return PAINT
-    if band == 2:
+    if band == 1:
         pillar = any(abs(x - p) < 0.051 for p in shape.pillars)
         return GLASS if shape.glazed[0] < x < shape.glazed[1] and not pillar else PAINT
     if x > screen:
@@ -99,7 +100,10 @@ def _slot(shape: Shape, x: float, band: int) -> int:
 def _end(skin: Skin, ring: np.ndarray, front: bool) -> None:
     """Close nose or tail by quads from side to side, with lamps; the nose has a grille between them."""
     right, left = ring[:_HALF], ring[: _HALF - 1 : -1]
-    for k in range(_HALF - 1):
+    waist = np.array([0.5, 0.5])
+    right = np.concatenate([right[:1], [waist @ right[:2]], right[1:]])
+    left = np.concatenate([left[:1], [waist @ left[:2]], left[1:]])
+    for k in range(_HALF):
         low, high = (right[k], left[k]), (right[k + 1], left[k + 1])
         cuts = (0.0, 0.2, 0.8, 1.0) if k == 1 else (0.0, 1.0)
         for a, b in pairwise(cuts):

@@ -73,7 +73,7 @@ def _shape(body: str) -> Shape:
 def _exhaust(skin: Skin, tip: np.ndarray, radius: float = 0.035) -> None:
     """The last hand's breadth of the pipe, pointing back."""
     skin.site(EXHAUST, tip - np.array([0.12, 0.0, 0.0]), np.array([-1.0, 0.0, 0.2]), 0.03)
-    skin.tube(tip + np.array([0.15, 0.0, 0.0]), tip - np.array([0.1, 0.0, 0.0]), (radius, radius), EXHAUST)
+    skin.tube(tip + np.array([0.15, 0.0, 0.0]), tip - np.array([0.1, 0.0, 0.0]), (radius, radius), EXHAUST, 5)
 
 
 def _mirrors(skin: Skin, shape: Shape) -> None:
@@ -81,7 +81,7 @@ def _mirrors(skin: Skin, shape: Shape) -> None:
     x, y, z = shape.cabin[3] - 0.35, shape.width_m / 2 - 0.06, shape.belt_m + 0.06
     for side in (-1.0, 1.0):
         low, high = sorted((side * y, side * (y + 0.2)))
-        skin.box((x, low, z), (x + 0.08, high, z + 0.13), PAINT)
+        skin.box((x, low, z), (x + 0.08, high, z + 0.13), PAINT, under=False)
 
 
 def _truck(skin: Skin) -> None:

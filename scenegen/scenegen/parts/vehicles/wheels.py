@@ -9,9 +9,9 @@ from scenegen.parts.lofts import fan_faces, loft_faces
 from scenegen.parts.skin import Skin
 from scenegen.parts.vehicles.slots import TYRE, WHEEL
 
-_RIM = 10
+_RIM = 8
 _CONTACT_M = 0.01
-"""How far a loaded tyre sinks below the round."""
+"""How far the flat of a loaded tyre lies in the ground."""
 
 
 def wheels(
@@ -42,7 +42,7 @@ def wheels(
         skin.site(WHEEL, place, out, LUMP_STANDOFF_M)
     for x in axles:
         for side in (-1.0, 1.0):
-            hub = np.array([x, side * outer_m, radius_m - _CONTACT_M])
+            hub = np.array([x, side * outer_m, radius_m * np.cos(np.pi / _RIM) - _CONTACT_M])
             rings = np.array([hub + [0.0, side * y, 0.0] + r * circle for y, r in profile])
             points, tyre = rings.reshape(-1, 3), loft_faces(3, _RIM)
             disc = fan_faces(_RIM)
