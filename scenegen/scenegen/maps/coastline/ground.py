@@ -25,6 +25,8 @@ _FINE_M, _OPEN_M, _FACE_M = 2.1, 4.0, 1.05
 _FINE_POINTS = 30_000
 """Points of the fine lattice, at most: where the shore is long, everything is a little coarser."""
 _CONTACT_M = 1.2
+_AROUND = ((1.0, 0.25), (1.5, 1.1))
+"""Spacing and distance of the rows of points around rocks [m]."""
 _ROAD_END_M = 2200.0
 _CLEAR_M = 0.01
 _FOLD = 0.45
@@ -323,7 +325,7 @@ def _points(
     sq_far = coast.offset(far)
     dry = sq_far[:, 1] > np.interp(sq_far[:, 0], strips.s, strips.foot)
     large = [s for s in stones if s.area > 3.0]
-    rows = [contact_points(list(holes), _CONTACT_M, 0.9), contact_points(large, _CONTACT_M, 0.35)]
+    rows = [contact_points(list(holes), _CONTACT_M, 0.9), *(contact_points(large, s, d) for s, d in _AROUND)]
     fine = fine[zone(fine) & ~steep(fine)]
     points = np.concatenate([*rows, face[steep(face)], fine, far[dry & ~(square & zone(far))]])
     hidden = shapely.STRtree(stones).query(shapely.points(points), predicate="within")[0]

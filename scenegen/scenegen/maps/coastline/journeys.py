@@ -72,19 +72,14 @@ def depart(
         return sea.height(xy, np.full(len(xy), _CELL_M))
 
     traffic = road_rng.uniform(*shop.knobs.traffic_per_100_m)
-    return (
-        *drive([plan.road], traffic, shop, road_rng, speed_mps=(9.0, 15.0)),
-        *stroll(list(plan.walks), beach_rng.uniform(0.5, 2.5), shop, beach_rng),
-        *stroll([plan.pier], pier_rng.uniform(0.5, 2.0), shop, pier_rng, ground=deck),
-        *sail(
-            list(plan.courses),
-            boat_rng.uniform(*shop.knobs.sailing_per_km),
-            shop,
-            boat_rng,
-            water=water,
-            wave_height_m=sea.waves.significant_m,
-        ),
-    )
+    movers = list(drive([plan.road], traffic, shop, road_rng, speed_mps=(9.0, 15.0)))
+    for way in plan.walks:
+        movers += stroll([way], beach_rng.uniform(0.5, 2.5), shop, beach_rng)
+    movers += stroll([plan.pier], pier_rng.uniform(0.5, 2.0), shop, pier_rng, ground=deck)
+    busy = boat_rng.uniform(*shop.knobs.sailing_per_km)
+    for course in plan.courses:
+        movers += sail([course], busy, shop, boat_rng, water=water, wave_height_m=sea.waves.significant_m)
+    return tuple(movers)
 
 
 def _along_the_edge(layout: Layout, shop: CoastWorkshop) -> list[shapely.LineString]:

@@ -55,12 +55,12 @@ def build_roadside(
     line = line[np.abs(line).max(axis=1) < shop.coast.half_m + 150.0]
     rail_rng, pole_rng, lamp_rng, fence_rng = rng.spawn(4)
     rails, rail_m = _guard_rail(line, layout, shop, rail_rng)
-    poles, wired = _poles(line, shop, pole_rng)
+    poles, standing = _poles(line, shop, pole_rng)
     lamps = _posts("lamp", line, layout, shop, lamp_rng)
-    parts = [*rails, *poles, *wired, *lamps[0], *_lighthouse_fence(layout, shop, fence_rng)]
+    parts = [*rails, *poles, *lamps[0], *_lighthouse_fence(layout, shop, fence_rng)]
     return parts, {
         "guard rail (m)": rail_m,
-        "utility poles": len(poles) and int(len(poles[0].faces) > 0),
+        "utility poles": standing,
     } | lamps[1]
 
 
@@ -97,7 +97,7 @@ def _guard_rail(
     )
 
 
-def _poles(line: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator) -> tuple[list[Part], list[Part]]:
+def _poles(line: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator) -> tuple[list[Part], int]:
     """Utility poles on the landward side with four wires and a telephone cable from pole to pole."""
     length = shapely.LineString(line).length
     mark = np.arange(rng.uniform(5.0, 30.0), length, _POLE_PITCH_M)
@@ -105,7 +105,7 @@ def _poles(line: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator) -> t
     free = shop.claims.free(shapely.buffer(shapely.points(xy), 0.5), 0.4)
     xy, heading = xy[free], heading[free]
     if len(xy) < 2:
-        return [], []
+        return [], 0
     for point in shapely.buffer(shapely.points(xy), 0.3):
         shop.claims.hold(point)
     foot = np.column_stack([xy, shop.relief(xy)])
@@ -124,7 +124,7 @@ def _poles(line: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator) -> t
         sag = 0.022 * np.linalg.norm(end - start, axis=1)
         owner = shop.builder.new_objects(len(start)) + np.arange(len(start))
         hung.append(wires(start, end, sag, radius, skin, int(Semantic.WIRE), owner))
-    return parts, hung
+    return [*parts, *hung], len(xy)
 
 
 def _posts(

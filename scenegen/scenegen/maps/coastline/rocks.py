@@ -17,6 +17,9 @@ _SHAPES = 5
 _PLAN = 1.12
 """Plan radius of a boulder, in sizes."""
 
+_WAIST = 0.95
+"""The same where it meets the ground, on average."""
+
 
 def build_rocks(rock: str, shop: CoastWorkshop, rng: np.random.Generator) -> tuple[list[Part], np.ndarray]:
     """Rocks as parts, and their footprints: ground below them is never seen.
@@ -50,7 +53,16 @@ def build_rocks(rock: str, shop: CoastWorkshop, rng: np.random.Generator) -> tup
             parts.append(
                 place(template, position[mine], heading[mine], scale[mine], skins[mine], owner[mine])
             )
-    return parts, shapely.buffer(shapely.points(xy), 0.85 * scale[:, :2].min(axis=1), quad_segs=3)
+    return parts, _footprints(xy, scale, heading)
+
+
+def _footprints(xy: np.ndarray, scale: np.ndarray, heading: np.ndarray) -> np.ndarray:
+    """Ellipses of about the rocks' outline at the ground."""
+    turn = 2 * np.pi * np.arange(12) / 12
+    c, s = np.cos(heading)[:, None], np.sin(heading)[:, None]
+    x, y = scale[:, :1] * np.cos(turn), scale[:, 1:2] * np.sin(turn)
+    ring = np.stack([c * x - s * y, s * x + c * y], axis=-1) * _WAIST
+    return np.asarray(shapely.polygons(ring + xy[:, None]))
 
 
 def _draw(shop: CoastWorkshop, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:

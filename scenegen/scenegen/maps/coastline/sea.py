@@ -13,14 +13,12 @@ from scenegen.geometry.part import LUMP_STANDOFF_M, Part
 from scenegen.geometry.patch import quads_to_triangles
 from scenegen.maps.coastline.knobs import CoastlineKnobs
 from scenegen.maps.coastline.relief import CoastRelief
-from scenegen.maps.coastline.shape import FAR_M
+from scenegen.maps.coastline.sea_lattice import cell_size_m, level_seams, sea_lattice
 from scenegen.maps.coastline.waves import Waves, draw_waves
 from scenegen.maps.coastline.workshop import CoastWorkshop
 
-_CELLS = 110_000
-"""Fine cells of the detailed sea, about: their size follows."""
-_GROWTH = 1.16
-_SITE_CELLS = 20
+_FAR_SWELL_M = 1.6
+_SCATTER = np.array([[1.37, 0.91], [-0.83, 1.59], [1.91, -1.13]])
 _UNDER_BEACH_M = 0.4
 _BREAKING = 0.6
 """Waves are no higher than this share of the depth (McCowan's 0.78, less for random seas)."""
@@ -36,11 +34,14 @@ class Sea:
     relief : CoastRelief
         Decides the depth.
     temperature_K : float
+    slope : float
+        Standard deviation of the slope of the surface along one direction.
     """
 
     waves: Waves
     relief: CoastRelief
     temperature_K: float
+    slope: float
 
     def height(
         self, xy: Float64[np.ndarray, "points 2"], cell_m: Float64[np.ndarray, "points"]
@@ -59,6 +60,22 @@ class Sea:
         share = np.minimum(_BREAKING * depth / max(self.waves.significant_m, 0.05), 1.0)
         return np.asarray(share * self.waves.elevation(xy, cell_m))
 
+    def swelling(
+        self, xy: Float64[np.ndarray, "points 2"], cell_m: Float64[np.ndarray, "points"]
+    ) -> Float64[np.ndarray, "points"]:
+        """Rise and fall [m] that gives far, large cells some of the slope of the waves they cannot carry.
+
+        Without it the far sea would be a perfect mirror of the horizon, and no horizon could be seen. It grows with
+        the distance and is never higher than a ship could tell.
+        """
+        beyond = np.maximum(np.abs(xy).max(axis=1) - self.relief.coast.half_m, 0.0)
+        most = 0.25 * self.waves.significant_m + _FAR_SWELL_M * (1.0 - np.exp(-beyond / 3000.0))
+        most = most * np.minimum(beyond / 100.0, 1.0)
+        scatter = np.sin(xy @ _SCATTER.T).sum(axis=1) / np.sqrt(
+            1.5
+        )  # far shorter than any cell: no two vertices agree
+        return np.asarray(np.minimum(self.slope * cell_m / np.sqrt(2.0), most) * scatter)
+
 
 def draw_sea(relief: CoastRelief, knobs: CoastlineKnobs, shop_K: float, rng: np.random.Generator) -> Sea:
     """Draw wind, swell and the water's departure from the climatology `shop_K` [K]."""
@@ -67,27 +84,23 @@ def draw_sea(relief: CoastRelief, knobs: CoastlineKnobs, shop_K: float, rng: np.
     wind, fetch = own.uniform(*knobs.wind_mps), 1e3 * own.uniform(*knobs.fetch_km)
     waves = draw_waves(wind, fetch, own.uniform(*knobs.swell_m), towards, phases)
     warm = shop_K + 1.2 * float(np.clip(own.standard_normal(), -2.0, 2.0))
-    return Sea(waves, relief, max(warm, FREEZING_K))
+    # Cox and Munk 1954, half of the mean square slope along either axis.
+    slope = float(np.sqrt(0.5 * (0.003 + 0.00512 * wind)))
+    return Sea(waves, relief, max(warm, FREEZING_K), slope)
 
 
 def build_sea(sea: Sea, shop: CoastWorkshop) -> Part:
     """Mesh of all water that is not under land."""
-    axis = _axis(shop.coast.half_m)
-    count, step = len(axis), np.gradient(axis)
-    x, y = (g.ravel() for g in np.meshgrid(axis, axis))
-    cell = np.maximum(*(g.ravel() for g in np.meshgrid(step, step)))
-    points = np.column_stack([x, y])
+    points, quads, block = sea_lattice(shop.coast.half_m)
+    cell = cell_size_m(points, shop.coast.half_m)
     ground = shop.relief(points)
-    i, j = (g.ravel() for g in np.meshgrid(np.arange(count - 1), np.arange(count - 1)))
-    quads = (j * count + i)[:, None] + np.array([0, 1, count + 1, count])
     keep = (ground[quads] < _UNDER_BEACH_M).any(axis=1)
-    quads, i, j = quads[keep], i[keep], j[keep]
-    used, index = np.unique(quads, return_inverse=True)
+    used, index = np.unique(quads[keep], return_inverse=True)
     xy = points[used]
-    vertices = np.column_stack([xy, sea.surface(xy, cell[used], ground[used])])
-    quads = index.reshape(-1, 4)
-    block, site = np.unique((j // _SITE_CELLS) * count + i // _SITE_CELLS, return_inverse=True)
-    return _part(vertices, quads, site, len(block), sea, shop)
+    height = sea.surface(xy, cell[used], ground[used]) + sea.swelling(xy, cell[used])
+    height = level_seams(xy, height, shop.coast.half_m)
+    _, site = np.unique(block[keep], return_inverse=True)
+    return _part(np.column_stack([xy, height]), index.reshape(-1, 4), site, int(site.max()) + 1, sea, shop)
 
 
 def _part(
@@ -112,17 +125,3 @@ def _part(
         site_normal=np.tile([0.0, 0.0, 1.0], (sites, 1)),
         site_standoff=np.full(sites, LUMP_STANDOFF_M),
     )
-
-
-def _axis(half_m: float) -> np.ndarray:
-    """Grid lines: even over the detailed square, then ever wider to the horizon."""
-    step = 2 * half_m / np.sqrt(2.0 * _CELLS)
-    count = int(2 * half_m / step)
-    inner = np.linspace(-half_m, half_m, count + 1)
-    tail, width = [], 2 * half_m / count
-    at = half_m
-    while at < FAR_M:
-        width *= _GROWTH
-        at = min(at + width, FAR_M) if at + 1.5 * width < FAR_M else FAR_M
-        tail.append(at)
-    return np.concatenate([-np.array(tail)[::-1], inner, tail])
