@@ -27,6 +27,8 @@ _SHOWS_TWIGS = 0.75
 _HIDDEN_SHARE, _HIDDEN_AREA = 0.2, 1.7
 """Share of the sprays that fill the inside of a crown, and their area against the others: nobody sees their edges."""
 _REACH = 0.96
+_LOWEST_LEAF = 0.4
+"""How far down leaves hang, in heights of the outline's base."""
 _STRAY = 0.4
 """How far sprays stand off their twigs, in their lengths: petioles and side shoots too fine to draw."""
 _TWIG_RADIUS = (0.0016, 0.0006)
@@ -205,4 +207,6 @@ def _foliage(
         base + length[:, None] * (_STRAY * stray - 0.3 * heading), heading, facing, length, leaf.slender
     )
     middle = middles(made)
-    return moved_by(made, pull_inside(outline, middle, 0.95) - middle)
+    inside = moved_by(made, pull_inside(outline, middle, 0.95) - middle)
+    lowest = np.array([-np.inf, -np.inf, _LOWEST_LEAF * outline.base])
+    return Mesh(np.maximum(inside.vertices, lowest), inside.faces)
