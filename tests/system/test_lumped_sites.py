@@ -15,13 +15,14 @@ from scenegen.classes import Semantic
 from scenegen.climate.season import Season
 from scenegen.foundation.rng import stream
 from scenegen.geometry.builder import GeometryBuilder
-from scenegen.geometry.cars import RUBBER, car
 from scenegen.geometry.part import LUMP_STANDOFF_M
 from scenegen.geometry.patch import patches
 from scenegen.geometry.template import Template, place
 from scenegen.geometry.trees import LEAVES, broadleaf, conifer, grove, shrub
-from scenegen.maps.city.furniture import lamp, sign, traffic_light
 from scenegen.materials.palette import PaletteBuilder
+from scenegen.parts.fixtures.posts import lamp, sign, traffic_light
+from scenegen.parts.vehicles.slots import SLOTS, TYRE
+from scenegen.parts.vehicles.vehicle import vehicle
 from scenegen.world import HeightField, World
 from scenegen_render.exposure.expose import expose
 from scenegen_render.exposure.knobs import ExposureKnobs
@@ -39,7 +40,7 @@ def kinds() -> dict[str, tuple[Template, int, float]]:
         "conifer": (conifer(rng), LEAVES, 8.0),
         "grove": (grove(rng), 0, 12.0),
         "shrub": (shrub(rng), 0, 1.2),
-        "tyres": (car("saloon"), RUBBER, 1.0),
+        "tyres": (vehicle("saloon"), TYRE, 1.0),
         "lamp": (lamp(), 0, 1.0),
         "traffic light": (traffic_light(), 0, 1.0),
         "sign": (sign(), 0, 1.0),
@@ -57,7 +58,7 @@ class Field:
         one = np.ones(1, np.int64)
         builder.add(patches(corners, 50.0, ground * one, int(Semantic.GRASS) * one, one))
         for k, (template, slot, size) in enumerate(kinds().values()):
-            surfaces = np.full((1, 3), ground)
+            surfaces = np.full((1, SLOTS), ground)
             surfaces[0, slot] = skin
             spot = np.array([[(k - 3.5) * APART_M, 0.0, 0.0]])
             builder.add(place(template, spot, np.zeros(1), np.full((1, 3), size), surfaces, one + 1 + k))

@@ -9,7 +9,6 @@ import shapely
 from scenegen.classes import Semantic
 from scenegen.geometry.boxes import boxes
 from scenegen.geometry.builder import GeometryBuilder
-from scenegen.geometry.cars import BODIES, RUBBER, car
 from scenegen.geometry.part import concatenate, face_areas, face_normals
 from scenegen.geometry.patch import patches
 from scenegen.geometry.placement import along, clear_of, first_come, rectangles
@@ -17,6 +16,7 @@ from scenegen.geometry.ragged import ragged_arange, ragged_grid
 from scenegen.geometry.rings import inset, strip
 from scenegen.geometry.template import place
 from scenegen.geometry.trees import LEAVES, broadleaf, conifer, shrub
+from scenegen.parts.vehicles.vehicle import vehicle
 
 SQUARE = np.array([[[0, 0, 0], [6, 0, 0], [6, 4, 0], [0, 4, 0]]], np.float64)
 ZERO = np.zeros(1, np.int64)
@@ -73,11 +73,11 @@ def test_boxes_are_closed_but_for_the_underside():
 
 
 def test_a_copy_is_turned_scaled_and_sheared():
-    template = car("saloon")
+    template = vehicle("saloon")
     position = np.array([[10.0, -4.0, 2.0]])
     part = place(
         template, position, np.array([np.pi / 2]), np.array([[1.0, 1.0, 2.0]]),
-        np.array([[5, 6, 7]]), np.array([3]), np.array([[0.1, 0.0]]),
+        np.array([[5, 6, 7, 8, 9, 10, 11, 12]]), np.array([3]), np.array([[0.1, 0.0]]),
     )  # fmt: skip
     expected = np.column_stack(
         [-template.vertices[:, 1], template.vertices[:, 0], 2 * template.vertices[:, 2]]
@@ -85,18 +85,7 @@ def test_a_copy_is_turned_scaled_and_sheared():
     expected[:, 2] += 0.1 * expected[:, 0]
     assert np.allclose(part.vertices, expected + position)
     assert np.allclose(np.linalg.norm(part.site_normal, axis=1), 1.0)
-    assert set(np.unique(part.surface)) == {5, 6, 7}
-
-
-@pytest.mark.parametrize("body", BODIES)
-def test_a_car_stands_on_its_wheels_and_faces_outwards(body):
-    template = car(body)
-    assert template.vertices[:, 2].min() == pytest.approx(0.0, abs=0.02)
-    normals, _ = face_normals(template.vertices, template.faces)
-    shell = template.slot != RUBBER
-    outward = template.vertices[template.faces].mean(axis=1) - np.array([0.0, 0.0, 0.6])
-    assert (np.einsum("ij,ij->i", normals, outward)[shell] > 0).all()
-    assert 6 <= len(template.site_position) <= 16
+    assert set(np.unique(part.surface)) == set(range(5, 12))
 
 
 @pytest.mark.parametrize("grow", [broadleaf, conifer, shrub])
