@@ -20,8 +20,8 @@ from scenegen.maps.field.workshop import FieldWorkshop
 _WALLS = ("stucco_render", "brick_red", "stucco_render", "wood_siding")
 _ROOFS = ("clay_roof_tile", "clay_roof_tile", "slate_roof", "metal_roof_painted_mid")
 _FINE_M = 750.0
-_BEYOND_M, _EDGE_M = 42.0, 160.0
-_CELLS_M = ((250.0, 600.0, 1200.0), (4.0, 16.0, 38.0))
+_BEYOND_M, _EDGE_M = 42.0, 230.0
+_CELLS_M = ((250.0, 600.0, 1200.0, 2200.0), (4.0, 16.0, 38.0, 60.0))
 """About half the size of the ground's triangles [m] at distances from the origin [m]."""
 _LEVELS_M = (0.0, 450.0, 700.0, 1100.0, 1700.0, 1e9)
 
