@@ -183,7 +183,7 @@ def moved(
     ray = _as_far_as(other.translation, back, reach)
     hidden = lit.loaded.scene.ray_test(ray, coherent=True, active=inside)
     column, row = mi.UInt(dr.select(inside, u + cx, 0.0)), mi.UInt(dr.select(inside, v + cy, 0.0))
-    near = dr.gather(mi.UInt, then.near, row * camera.width_px + column, inside) > 0
+    near = dr.gather(mi.Bool, then.near, row * camera.width_px + column, inside)
     hidden |= dr.if_stmt(
         args=(ray.o, ray.d, ray.maxt),
         cond=inside & ~hidden & near,

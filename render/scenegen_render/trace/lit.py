@@ -11,7 +11,7 @@ import numpy as np
 from jaxtyping import Float32
 
 from scenegen.foundation.errors import InputError
-from scenegen.materials.material import Surface
+from scenegen.materials.material import Build, Surface
 from scenegen.movers.company import Company
 from scenegen.radiometry.band import mirror_index
 from scenegen.thermal_state import ThermalState
@@ -19,6 +19,7 @@ from scenegen_render import backend
 from scenegen_render.scene import LoadedWorld
 from scenegen_render.trace import open_air
 from scenegen_render.trace.air import Air, device_air
+from scenegen_render.trace.ripples import slope_per_axis
 from scenegen_render.trace.troupe import Troupe, face_object, face_record
 
 
@@ -41,7 +42,7 @@ class Lit:
     surface : mitsuba.Float, 4 per palette entry
         Emissivity, texture amplitude [K], 1 / texture scale [1/m], 1 where mirror-like.
     mirror : mitsuba.Float, 4 per palette entry
-        Refractive index n and k (0 for bare metals), constant reflectance, unused.
+        Refractive index n and k (0 for bare metals), constant reflectance, slope of the ripples (0 but for water).
     material : mitsuba.UInt, 1 per palette entry
         Material ids.
     air : Air
@@ -104,7 +105,7 @@ def light(
         face=face,
         object=objects,
         surface=backend.upload(_surface_table(world.palette, state.texture_K)),
-        mirror=backend.upload(_mirror_table(world.palette, band_um)),
+        mirror=backend.upload(_mirror_table(world.palette, band_um, slope_per_axis(state.weather.wind_mps))),
         material=backend.upload(np.array([s.material.id for s in world.palette], np.uint32)),
         air=device_air(state.atmosphere, band_um, air_seed),
         texture_seed=dr.opaque(mi.UInt, loaded.texture_seed),
@@ -152,13 +153,14 @@ def _surface_table(
 
 
 def _mirror_table(
-    palette: tuple[Surface, ...], band_um: tuple[float, float]
+    palette: tuple[Surface, ...], band_um: tuple[float, float], sea_slope: float
 ) -> np.ndarray[Any, np.dtype[np.float32]]:
     rows = []
     for s in palette:
         index = mirror_index(s.material, band_um)
         n, k = (index.n, index.k) if index else (0.0, 0.0)
-        rows.append((n, k, s.material.mirror_reflectance or 0.0, 0.0))
+        slope = sea_slope if s.material.build is Build.WATER else 0.0
+        rows.append((n, k, s.material.mirror_reflectance or 0.0, slope))
     return np.array(rows, np.float32).reshape(-1)
 
 

@@ -79,13 +79,14 @@ class Sampler:
         """Send every sub-sample and shade what it meets."""
         mi, dr = backend.modules()
         towards = pose.turn(self._plane.x, self._plane.y, mi.Float(1.0))
-        near = dr.gather(mi.UInt, view.near, self._pixel_of(dr.arange(mi.UInt, dr.width(towards)))) > 0
+        near = dr.gather(mi.Bool, view.near, self._pixel_of(dr.arange(mi.UInt, dr.width(towards))))
         hit = surface.cast(lit, view.instant, pose.translation, towards, near)
         on = surface.skin(lit, hit)
         length = dr.norm(towards)
-        cosine = surface.cosine(on, towards / length)
-        temperature = surface.textured_K(lit, hit, on, hit.depth * self._metre_per_depth / cosine)
-        rho = mirror.reflectance(lit, hit, on, cosine)
+        unit = towards / length
+        footprint_m = hit.depth * self._metre_per_depth / surface.cosine(on, unit)
+        temperature = surface.textured_K(lit, hit, on, footprint_m)
+        rho = mirror.reflectance(lit, hit, on, unit, footprint_m)
         tau = lit.air.transmission(hit.depth * length)
         leaving = surface.radiance(lit, on, temperature, rho)
         arriving = dr.fma(tau, leaving - lit.air.air_radiance, lit.air.air_radiance)
@@ -169,4 +170,6 @@ class Sampler:
         place = lane * self._group + first
         face = dr.gather(mi.UInt, samples.face, place)
         depth = dr.gather(mi.Float, samples.depth, place)
-        return mirror.incoming(lit, now, pose, self._towards(pose, chosen), face, depth)
+        return mirror.incoming(
+            lit, now, pose, self._towards(pose, chosen), face, depth, self._metre_per_depth
+        )

@@ -51,11 +51,14 @@ class View:
     Attributes
     ----------
     instant : Instant
-    near : mitsuba.UInt, 1 per pixel
-        Row by row: 1 where a ray of the pixel can meet a mover, mostly 0. Only there is their scene traced.
+    pose : float64 (4, 4)
+        `world_from_camera`.
+    near : mitsuba.Bool, 1 per pixel
+        Row by row: whether a ray of the pixel can meet a mover. Only there is their scene traced.
     """
 
     instant: Instant
+    pose: Pose
     near: Any
 
 
@@ -88,9 +91,19 @@ class Troupe:
         self.rest = backend.upload(_rest_corners(company))
         self._stages: list[_Stage] = []
 
-    def at(self, time_s: float) -> Instant:
-        """The movers at one time; the last few are kept."""
-        known = [stage for stage in self._stages if stage.time_s == time_s]
+    def seen(self, time_s: float, camera: Camera, pose: Pose) -> View:
+        """The movers at one time, as a camera may see them; the last few times are kept."""
+        stage = self._stage(time_s)
+        for seen_by, view in stage.views:
+            if seen_by == camera and np.array_equal(view.pose, pose):
+                return view
+        near = backend.upload(around(self.company, time_s, camera, pose))
+        view = View(stage.instant, pose, near)
+        stage.views = [*stage.views[1 - _KEPT :], (camera, view)]
+        return view
+
+    def _stage(self, time_s: float) -> _Stage:
+        known = [stage for stage in self._stages if stage.instant.time_s == time_s]
         if known:
             stage = known[0]
             self._stages.remove(stage)
@@ -100,12 +113,7 @@ class Troupe:
             stage = self._stages.pop(0) if full else _Stage(vertices, self.faces)
             stage.move(vertices, time_s)
         self._stages.append(stage)  # the last used last: the first may be overwritten
-        return stage.instant
-
-    def seen(self, time_s: float, camera: Camera, pose: Pose) -> View:
-        """The movers at one time, as a camera may see them."""
-        near = around(self.company, time_s, camera, pose)
-        return View(self.at(time_s), backend.upload(near.astype(np.uint32)))
+        return stage
 
 
 class _Stage:
@@ -121,14 +129,14 @@ class _Stage:
         description = {"type": "scene", "embree_use_robust_intersections": True, "movers": mesh}
         self._scene = mi.load_dict(description, optimize=False, parallel=False)
         self._parameters = mi.traverse(self._scene)
-        self.time_s = float("nan")
 
     def move(self, vertices: Float32[np.ndarray, "vertices 3"], time_s: float) -> None:
         """Put the vertices where they are at a time and rebuild the acceleration structure."""
         on_device = backend.upload(vertices)
         self._parameters["movers.vertex_positions"] = on_device
         self._parameters.update()
-        self.time_s, self.instant = time_s, Instant(time_s, self._scene, on_device)
+        self.instant = Instant(time_s, self._scene, on_device)
+        self.views: list[tuple[Camera, View]] = []
 
 
 def face_record(company: Company, first_site: int) -> UInt32[np.ndarray, "faces 4"]:
