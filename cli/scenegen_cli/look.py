@@ -36,7 +36,7 @@ def look(command: Maps, flags: Mapping[str, Any]) -> int:
         return 0
     for path in written:
         say(str(path))
-    say(in_numbers(world))
+    say("\n".join(in_numbers(world)))
     return 0
 
 

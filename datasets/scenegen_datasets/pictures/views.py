@@ -6,11 +6,12 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Float32, Float64, UInt16
 
 from scenegen.climate.knobs import draw_weather_and_hour
 from scenegen.foundation.errors import RejectedDrawError
 from scenegen.foundation.rng import stream
+from scenegen.movers.clock import Clock
 from scenegen.thermal_state import ThermalState
 from scenegen.world import World
 from scenegen_datasets.pictures.shot import Shot
@@ -34,8 +35,8 @@ _BIRD_PITCH_DEG = 33.0
 _DRONE_FOV_DEG = 90.0
 _MARGIN = 1.06
 _HAZY_M = 1500.0  # larger worlds are seen from so far that a camera would see little but air
-_FLIGHT_FRAMES = 33
-_COUNTS_PER_K = 40.0
+_FLIGHT_FRAMES = 65
+_SPREAD_COUNTS = 400.0
 
 Pose = Float64[np.ndarray, "4 4"]
 
@@ -77,42 +78,63 @@ def photograph(stage: Stage, recipe: Recipe, map: str, index: int) -> tuple[Ther
         recipe.climate, stage.exposure.season, stream(recipe.seed, *path, "weather")
     )
     state = stage.heat.solve(weather, hour)
-    band = recipe.camera.band_um
-    irradiance = bake(stage.loaded, stage.exposure, state, band, recipe.exposure)
-    studio = _Studio(stage, recipe, state, irradiance)
-    pose, words = drone_pose(stage, recipe, stream(recipe.seed, *path, "flight"))
-    plan_m = 2.0 * _half_size_m(stage.world)
+    clock = Clock.draw(stream(recipe.seed, *path, "clock")) if recipe.movers else Clock.stopped()
+    studio = _Studio(stage, recipe, state, float(clock.at(np.zeros(1))[0]))
+    across_m = 2.0 * _half_size_m(stage.world)
     return state, (
-        studio.view("plan", f"{plan_m:.0f} m across, north up", _PLAN_FOV_DEG, plan_pose(stage.world), False),
         studio.view(
-            "bird's eye", "from the south-west", _BIRD_FOV_DEG, bird_pose(stage.world), plan_m < _HAZY_M
+            "plan", f"{across_m:.0f} m across, north up", _PLAN_FOV_DEG, plan_pose(stage.world), False
         ),
-        studio.view("drone", words, _DRONE_FOV_DEG, pose, True),
+        studio.view(
+            "bird's eye", "from the south-west", _BIRD_FOV_DEG, bird_pose(stage.world), across_m < _HAZY_M
+        ),
+        _best_drone_view(studio, stage, recipe, stream(recipe.seed, *path, "flight")),
     )
 
 
-class _Studio:
-    """Takes pictures of one world in one thermal state."""
+def _best_drone_view(studio: _Studio, stage: Stage, recipe: Recipe, rng: np.random.Generator) -> View:
+    """Of three moments of the flight the one that shows most classes."""
+    views = [
+        studio.view("drone", words, _DRONE_FOV_DEG, pose, True)
+        for pose, words in drone_poses(stage, recipe, rng)
+    ]
+    return max(views, key=lambda view: np.unique(view.frame.semantic).size)
 
-    def __init__(self, stage: Stage, recipe: Recipe, state: ThermalState, irradiance: np.ndarray) -> None:
-        self._stage, self._recipe, self._state, self._irradiance = stage, recipe, state, irradiance
+
+class _Studio:
+    """Takes pictures of one world in one thermal state, all at the same instant."""
+
+    def __init__(self, stage: Stage, recipe: Recipe, state: ThermalState, time_s: float) -> None:
+        self._recipe, self._time_s = recipe, time_s
+        band = recipe.camera.band_um
+        irradiance = bake(stage.loaded, stage.exposure, state, band, recipe.exposure)
+        everyone = range(len(stage.world.movers))
+        # What a tracer makes of a state depends on the band alone, not on lens or size.
+        self._lit: Lit = self._tracer(_DRONE_FOV_DEG).light(stage.loaded, state, irradiance, everyone)
 
     def view(self, title: str, caption: str, fov_deg: float, pose: Pose, sees_air: bool) -> View:
         """Photograph from one pose."""
-        band = self._recipe.camera.band_um
-        camera = Camera.from_fov(VIEW_PX, VIEW_PX, fov_deg, band)
-        tracer = Tracer(camera, RenderKnobs(normals=True))
-        lit: Lit = tracer.light(self._stage.loaded, self._state, self._irradiance)
-        frame = tracer.frame(lit, pose, pose)
+        frame = self._tracer(fov_deg).frame(self._lit, pose, pose, times_s=(self._time_s,) * 3)
         if sees_air:
-            scale = CountScale.of(self._recipe.sensor, band)
+            scale = CountScale.of(self._recipe.sensor, self._recipe.camera.band_um)
             counts = radiance_to_counts(frame.radiance, scale)
             thermal = counts_to_brightness_K(counts, scale)
         else:
             thermal = np.where(frame.instance > 0, frame.temperature, _coldest(frame)).astype(np.float32)
-            counts = np.rint((thermal - thermal.min()) * _COUNTS_PER_K).astype(np.uint16)
+            counts = _spread(thermal)
         shot = Shot(title, caption, counts, thermal, frame.depth, frame.semantic, frame.instance)
         return View(title, caption, frame, shot, sees_air)
+
+    def _tracer(self, fov_deg: float) -> Tracer:
+        camera = Camera.from_fov(VIEW_PX, VIEW_PX, fov_deg, self._recipe.camera.band_um)
+        return Tracer(camera, RenderKnobs(normals=True))
+
+
+def _spread(thermal_K: Float32[np.ndarray, "rows columns"]) -> UInt16[np.ndarray, "rows columns"]:
+    """Temperatures as counts that use the greys well, however little they differ."""
+    low, high = np.percentile(thermal_K, (0.5, 99.5))
+    scaled = (thermal_K - low) * (_SPREAD_COUNTS / max(float(high - low), 0.1)) + _SPREAD_COUNTS
+    return np.asarray(np.rint(np.clip(scaled, 0.0, 4.0 * _SPREAD_COUNTS)), np.uint16)
 
 
 def _coldest(frame: Frame) -> float:
@@ -137,8 +159,8 @@ def bird_pose(world: World) -> Pose:
     return looking_at(middle + distance * away, middle)
 
 
-def drone_pose(stage: Stage, recipe: Recipe, rng: np.random.Generator) -> tuple[Pose, str]:
-    """A pose of a flight as clips fly it, and a few words about it.
+def drone_poses(stage: Stage, recipe: Recipe, rng: np.random.Generator) -> list[tuple[Pose, str]]:
+    """Poses of a flight as clips fly it, and a few words about each.
 
     Where no flight of this recipe fits into the world, the camera stands above its middle and says so.
     """
@@ -148,12 +170,14 @@ def drone_pose(stage: Stage, recipe: Recipe, rng: np.random.Generator) -> tuple[
     except RejectedDrawError:
         middle = _middle(world)
         half = _half_size_m(world)
-        return looking_at(
-            middle + np.array([0.0, -0.5 * half, 0.4 * half]), middle
-        ), "no flight of this recipe fits in here"
-    pose = flight.world_from_camera[_FLIGHT_FRAMES // 2]
-    height = float(pose[2, 3] - world.ground.at(pose[None, :2, 3])[0])
-    return pose, f"{height:.0f} m above ground, {flight.speed_mps:.0f} m/s"
+        pose = looking_at(middle + np.array([0.0, -0.5 * half, 0.4 * half]), middle)
+        return [(pose, "no flight of this recipe fits in here")]
+    poses = flight.world_from_camera[[_FLIGHT_FRAMES // 4, _FLIGHT_FRAMES // 2, 3 * _FLIGHT_FRAMES // 4]]
+    heights = poses[:, 2, 3] - world.ground.at(poses[:, :2, 3])
+    return [
+        (pose, f"{height:.0f} m above ground, {flight.speed_mps:.0f} m/s")
+        for pose, height in zip(poses, heights, strict=True)
+    ]
 
 
 def looking_at(eye: Float64[np.ndarray, "3"], target: Float64[np.ndarray, "3"]) -> Pose:

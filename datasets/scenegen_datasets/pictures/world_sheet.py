@@ -22,7 +22,7 @@ from scenegen_datasets.stopwatch import Stopwatch
 
 MARGIN_PX = 24
 GAP_PX = 10
-HEAD_PX = 100
+HEAD_PX = 122
 BAR_PX = 22
 LINE_PX = 20
 LEGEND_COLUMNS = 4
@@ -70,19 +70,20 @@ def world_sheet(world: World, state: ThermalState, views: Sequence[View], title:
     canvas = Canvas(width, foot + 40 + rows * LINE_PX + MARGIN_PX)
     end = canvas.text(MARGIN_PX, 38, title, 22)
     canvas.text(end + 18, 38, _weather(state), 13, FAINT)
-    canvas.text(MARGIN_PX, 62, in_numbers(world), 13, FAINT)
+    for k, line in enumerate(in_numbers(world)):
+        canvas.text(MARGIN_PX, 62 + k * LINE_PX, line, 13, FAINT)
     for k, view in enumerate(views):
         _column(canvas, MARGIN_PX + k * (VIEW_PX + GAP_PX), view)
     _legend(canvas, foot + 30, width, counts)
     return canvas
 
 
-def in_numbers(world: World) -> str:
-    """One line: triangles, sites, objects, and what the map itself counts."""
-    own = "   ".join(f"{count:,} {name}" for name, count in world.counts)
+def in_numbers(world: World) -> tuple[str, str]:
+    """Two lines: triangles, sites, objects and classes; and what the map itself counts."""
     return (
         f"{len(world.mesh.faces):,} triangles   {len(world.sites.area):,} thermal sites   "
-        f"{count_objects(world):,} objects   {len(count_classes(world))} classes      {own}"
+        f"{count_objects(world):,} objects   {len(count_classes(world))} classes",
+        "   ".join(f"{count:,} {name}" for name, count in world.counts),
     )
 
 
