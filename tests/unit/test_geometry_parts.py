@@ -1,4 +1,4 @@
-"""The smaller builders: merging, patches, templates, trees, cars, boxes, placement."""
+"""The smaller builders: merging, patches, templates, cars, boxes, placement."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import shapely
 
-from scenegen.classes import Semantic
 from scenegen.geometry.boxes import boxes
 from scenegen.geometry.builder import GeometryBuilder
 from scenegen.geometry.part import concatenate, face_areas, face_normals
@@ -15,7 +14,6 @@ from scenegen.geometry.placement import along, clear_of, first_come, rectangles
 from scenegen.geometry.ragged import ragged_arange, ragged_grid
 from scenegen.geometry.rings import inset, strip
 from scenegen.geometry.template import place
-from scenegen.geometry.trees import LEAVES, broadleaf, conifer, shrub
 from scenegen.parts.vehicles.vehicle import vehicle
 
 SQUARE = np.array([[[0, 0, 0], [6, 0, 0], [6, 4, 0], [0, 4, 0]]], np.float64)
@@ -86,23 +84,6 @@ def test_a_copy_is_turned_scaled_and_sheared():
     assert np.allclose(part.vertices, expected + position)
     assert np.allclose(np.linalg.norm(part.site_normal, axis=1), 1.0)
     assert set(np.unique(part.surface)) == set(range(5, 12))
-
-
-@pytest.mark.parametrize("grow", [broadleaf, conifer, shrub])
-def test_rays_that_leave_a_crown_site_outwards_never_meet_the_crown(grow):
-    template = grow(np.random.default_rng(4))
-    leaf = template.slot == (0 if grow is shrub else LEAVES)
-    leaves = template.vertices[template.faces[leaf]].reshape(-1, 3)
-    for k in np.unique(template.corner_site[leaf]):
-        height = (leaves - template.site_position[k]) @ template.site_normal[k]
-        assert height.max() <= 1e-9
-
-
-def test_trees_differ_and_have_bark_and_leaves():
-    first, second = (broadleaf(np.random.default_rng(k)) for k in (0, 1))
-    assert not np.allclose(first.vertices, second.vertices)
-    assert set(np.unique(first.slot)) == {0, 1}
-    assert set(np.unique(first.semantic)) == {int(Semantic.TREE)}
 
 
 def test_offset_rings_and_strips():

@@ -7,6 +7,7 @@ import pytest
 
 from scenegen.classes import Semantic
 from scenegen.climate.season import Season
+from scenegen.parts.vegetation.grove import grove
 from scenegen.parts.vegetation.hedges import hedge_piece, hedges
 from scenegen.parts.vegetation.shrubs import LEAVES, shrub, shrubs
 
@@ -73,3 +74,12 @@ def test_hedges_are_deterministic_and_empty_lines_are_nothing(workshop, same):
     first, again = (hedges(line, 1.2, 0.7, workshop(), np.random.default_rng(4)) for _ in range(2))
     assert same(first, again)
     assert hedges([], 1.0, 0.7, workshop(), np.random.default_rng(4)) == []
+
+
+def test_a_grove_fills_its_cylinder_and_differs_from_the_next():
+    first, second = (grove(np.random.default_rng(k)) for k in (0, 1))
+    assert first.vertices[:, 2].max() == 1.0 and -0.2 < first.vertices[:, 2].min() < 0.0
+    assert np.hypot(first.vertices[:, 0], first.vertices[:, 1]).max() == pytest.approx(0.5)
+    assert 100 < len(first.faces) < 260
+    assert set(first.slot) == {0} and len(np.unique(first.corner_site)) == 4
+    assert not np.allclose(first.vertices, second.vertices)

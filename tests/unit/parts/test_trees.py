@@ -15,6 +15,7 @@ from scenegen.parts.vegetation.species import SPECIES, Species
 from scenegen.parts.vegetation.tree import BARK, LEAVES, tree
 
 DECIDUOUS = sorted(name for name, s in SPECIES.items() if not s.evergreen)
+TRUNK_SITES = 3
 MONTHS = {"summer": Season(50.0, 7, 1), "winter": Season(50.0, 1, 15), "spring": Season(50.0, 5, 3)}
 
 
@@ -102,6 +103,16 @@ def test_rays_that_leave_a_leaf_site_outwards_never_meet_a_leaf(name):
     leaf = made.slot == LEAVES
     corners = made.vertices[made.faces[leaf]].reshape(-1, 3)
     for k in np.unique(made.corner_site[leaf]):
+        assert ((corners - made.site_position[k]) @ made.site_normal[k]).max() < 0.0
+
+
+@pytest.mark.parametrize("name", DECIDUOUS)
+def test_rays_that_leave_a_bare_crown_outwards_never_meet_a_branch(name):
+    made = model(name, in_leaf=0.0)
+    limbs = made.corner_site[:, 0] >= TRUNK_SITES
+    corners = made.vertices[made.faces[limbs]].reshape(-1, 3)
+    assert limbs.mean() > 0.8
+    for k in np.unique(made.corner_site[limbs]):
         assert ((corners - made.site_position[k]) @ made.site_normal[k]).max() < 0.0
 
 

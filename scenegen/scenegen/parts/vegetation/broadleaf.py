@@ -21,6 +21,8 @@ _TRUNK_FACES, _LIMB_FACES, _BRANCH_FACES, _TWIG_FACES = 84, 24, 9, 3
 """Triangles of one of each, as `tubes` makes them."""
 _WOOD_SHARE = 0.38
 """Of the triangles of a tree in leaf."""
+_SMALL_FACES = 900
+"""Below so many triangles, tubes have fewer sides."""
 _FOOT = -0.03
 _SHOWS_TWIGS = 0.75
 """Share of the foliage below which twigs are seen, and drawn."""
@@ -39,12 +41,12 @@ def grow(species: Broadleaf, plan: Plan, rng: np.random.Generator) -> Grown:
     bare = plan.in_leaf < _SHOWS_TWIGS
     faces = plan.faces / (1.0 + plan.in_leaf * bare)
     wood = _richness(species, faces, bare)
-    trunk = _trunk(species, rng)
+    small = faces < _SMALL_FACES
+    trunk = _trunk(species, 5 if small else 8, rng)
     limbs = _limbs(species, trunk, wood[0], rng)
     branches = _branches(species, limbs, wood[1], rng)
     twigs = _twigs(species, branches, wood[2], rng)
     trunk, limbs, branches, twigs = _filling(species, (trunk, limbs, branches, twigs))
-    small = faces < 900
     pieces = [tubes(limbs, 3 if small else 4, True), tubes(_coarse(branches, bare), 3, True)]
     if bare:
         pieces.append(tubes(twigs, 3, True))
@@ -60,8 +62,8 @@ def _richness(species: Broadleaf, faces: float, bare: bool) -> tuple[int, int, i
     """Limbs of the tree, branches of a limb, twigs of a branch: as many as the triangles for wood allow."""
     w = species.wood
     room_for = faces if bare else _WOOD_SHARE * faces
-    for share in np.geomspace(1.2, 0.3, 24):
-        limbs, branches = max(5, round(w.limbs * share)), max(3, round(w.branches * share))
+    for share in np.geomspace(1.2, 0.25, 26):
+        limbs, branches = max(4, round(w.limbs * share)), max(2, round(w.branches * share))
         twigs = max(2, round(w.twigs * share))
         each = branches * (_BRANCH_FACES + _TWIG_FACES * twigs if bare else _TWIG_FACES)
         if w.stems * _TRUNK_FACES + limbs * (_LIMB_FACES + each) <= room_for:
@@ -69,7 +71,7 @@ def _richness(species: Broadleaf, faces: float, bare: bool) -> tuple[int, int, i
     return limbs, branches, twigs
 
 
-def _trunk(species: Broadleaf, rng: np.random.Generator) -> Branches:
+def _trunk(species: Broadleaf, nodes: int, rng: np.random.Generator) -> Branches:
     w = species.wood
     lean = rng.normal(0.0, 0.03 + 0.1 * w.crooked, (w.stems, 3))
     if w.stems > 1:
@@ -83,7 +85,7 @@ def _trunk(species: Broadleaf, rng: np.random.Generator) -> Branches:
     reach = np.full(w.stems, w.leader - _FOOT)
     thick = np.full(w.stems, w.girth / np.sqrt(w.stems))
     tip = thick * (0.12 if w.leader > 0.75 else 0.4)
-    trunk = sprout(start, unit(lean), reach, (thick, tip), 8, 0.35, 0.25 * w.crooked, rng)
+    trunk = sprout(start, unit(lean), reach, (thick, tip), nodes, 0.35, 0.25 * w.crooked, rng)
     flare = 1.0 + 0.45 * np.exp(-np.maximum(trunk.points[..., 2], 0.0) / 0.025)
     return Branches(trunk.points, trunk.radius * flare)
 

@@ -15,6 +15,8 @@ from scenegen.parts.vegetation.branches import unit
 from scenegen.parts.vegetation.mesh import Mesh
 
 _OUTSIDE = 2e-3
+_UNDER, _UNDER_STANDOFF_M, _BESIDE_TRUNK = -0.99, 0.06, 0.45
+"""What looks down starts close to the ground and beside the trunk: neither may be between it and the ground."""
 _FACING, _MOTTLE = 0.30, 0.16
 """How much the way a card looks, and chance, count against where it sits, when it takes its site."""
 _INNER = 0.52
@@ -40,7 +42,11 @@ def supports(
 ) -> int:
     """Add a site at the outermost of the points in each direction; returns the index of the first."""
     places = points[np.argmax(points @ directions.T, axis=0)] + _OUTSIDE * directions
-    made = [model.site(p, d, LUMP_STANDOFF_M) for p, d in zip(places, directions, strict=True)]
+    under = directions[:, 2] < _UNDER
+    reach = np.abs(points[:, :2]).max()
+    places[under, :2] = _BESIDE_TRUNK * reach * np.array([0.8, 0.6])
+    standoff = np.where(under, _UNDER_STANDOFF_M, LUMP_STANDOFF_M)
+    made = [model.site(p, d, float(s)) for p, d, s in zip(places, directions, standoff, strict=True)]
     return made[0]
 
 

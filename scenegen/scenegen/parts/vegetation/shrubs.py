@@ -21,7 +21,7 @@ BARK, LEAVES = 0, 1
 """Surface slots of a shrub."""
 _FORMS = 4
 _SPRAYS, _STEMS, _SHOOTS = 84, 7, 4
-_FOOT = -0.06
+_FOOT, _LOWEST = -0.06, 0.08
 _BARE = 0.04
 _SITES = np.concatenate([UP, ring(4, 12.0), DOWN])
 _WOOD_SITES = np.concatenate([UP, ring(2, 0.0)])
@@ -143,5 +143,5 @@ def _leaves(in_leaf: float, rng: np.random.Generator) -> Mesh:
     vertices = made.vertices.copy()
     vertices[:, :2] *= 0.5 / np.abs(vertices[:, :2]).max()
     low, high = vertices[:, 2].min(), vertices[:, 2].max()
-    vertices[:, 2] = 0.01 + 0.99 * (vertices[:, 2] - low) / (high - low)
+    vertices[:, 2] = _LOWEST + (1.0 - _LOWEST) * (vertices[:, 2] - low) / (high - low)
     return Mesh(vertices, made.faces)

@@ -7,6 +7,7 @@ from jaxtyping import Int64
 
 from scenegen.classes import Semantic
 from scenegen.geometry.modelling import Modeller
+from scenegen.geometry.part import LUMP_STANDOFF_M
 from scenegen.geometry.template import Template
 from scenegen.parts.vegetation import broadleaf, palm, whorled
 from scenegen.parts.vegetation.cards import FACES
@@ -92,7 +93,7 @@ def _wood_in_leaf(model: Modeller, grown: Grown) -> None:
     sides = _trunk_sites(model, grown.trunk)
     wood = grown.limbs.vertices
     middle = wood[np.argmin(((wood - wood.mean(axis=0)) ** 2).sum(axis=1))]
-    shaded = supports(model, middle[None], DOWN)
+    shaded = model.site(middle, DOWN[0], LUMP_STANDOFF_M)
     high = grown.trunk.corners()[..., 2].mean(axis=1) > crown_base
     _add(model, grown.trunk, BARK, np.where(high, shaded, sides))
     _add(model, grown.limbs, BARK, np.full(len(grown.limbs), shaded))

@@ -14,6 +14,7 @@ from scenegen.parts.vegetation.tubes import tubes
 
 _FULL_FACES = 2400
 _FOOT = -0.03
+_LOWEST = 0.03
 UPWARD = np.array([0.0, 0.0, 1.0])
 
 
@@ -54,7 +55,7 @@ def _boughs(species: Whorled, trunk: Branches, whorls: int, each: int, rng: np.r
     points = start[:, None, :] + reach[:, None, None] * (
         out[:, None, :] * s[:, None] + UPWARD * lift[..., None]
     )
-    points[..., 2] = np.clip(points[..., 2], 0.012, 0.99)
+    points[..., 2] = np.clip(points[..., 2], 1.1 * _LOWEST, 0.99)
     radius = np.minimum(0.35 * thick, 0.006)[:, None] * (1 - 0.85 * s)
     return Branches(points, radius)
 
@@ -67,7 +68,7 @@ def _needles(species: Whorled, boughs: Branches, whorls: int, faces: int, rng: n
          _below(species, boughs, pairs, (1.0 - species.outline.base) / whorls, rng), _tips(boughs, rng)]
     )  # fmt: skip
     flat = corners.reshape(-1, 3)
-    flat[:, 2] = np.clip(flat[:, 2], 0.01, 0.995)
+    flat[:, 2] = np.clip(flat[:, 2], _LOWEST, 0.995)
     reach = np.maximum(1.05 * half_width(species.outline, flat[:, 2]), 0.012)
     flat[:, :2] *= np.minimum(1.0, reach / np.maximum(np.hypot(*flat[:, :2].T), 1e-9))[:, None]
     return Mesh.of(np.concatenate([flat, _leader()]).reshape(-1, 3, 3))
