@@ -100,7 +100,7 @@ def _trunk(skin: Skin, joints: Pose) -> None:
         [0.15, 0.08],
         [0.07, 0.06],
     ]
-    _limb(skin, centre, np.array(radii), 10, np.array([BOTTOM, BOTTOM, TOP, TOP, TOP, TOP]), "se")
+    _limb(skin, centre, np.array(radii), 8, np.array([BOTTOM, BOTTOM, TOP, TOP, TOP, TOP]), "se")
 
 
 _HEAD_POINTS = 10
@@ -112,7 +112,7 @@ _HEAD[0] = _HEAD[1, 5:] = _HEAD[2, 6:9] = SKIN
 def _head(skin: Skin, joints: Pose, size: float) -> None:
     tilt = np.array([0.4 * np.sin(joints.lean_rad), 0.0, 1.0])
     neck = _along(joints.neck - 0.03 * tilt, joints.neck + 0.07 * tilt, 0.0, 1.0)
-    _limb(skin, neck, np.array([[0.062, 0.062], [0.055, 0.06]]), 8, np.array([SKIN]))
+    _limb(skin, neck, np.array([[0.062, 0.062], [0.055, 0.06]]), 6, np.array([SKIN]))
     level = size * np.array([0.0, 0.035, 0.095, 0.15, 0.21, 0.235])
     forward = size * np.array([0.03, 0.025, 0.015, 0.01, 0.002, 0.0])
     centre = joints.neck + 0.035 * tilt + level[:, None] * tilt + forward[:, None] * [1.0, 0.0, 0.0]
@@ -128,7 +128,7 @@ def _leg(skin: Skin, joints: Pose, k: int) -> None:
     hip, knee, ankle = joints.hip[k], joints.knee[k], joints.ankle[k]
     centre = np.concatenate([_along(hip, knee, -0.02, 0.45), _along(knee, ankle, 0.0, 0.32, 1.02)])
     radii = np.array([[0.086, 0.1], [0.078, 0.087], [0.057, 0.062], [0.055, 0.064], [0.042, 0.048]])
-    _limb(skin, centre, radii, 8, np.array([BOTTOM, BOTTOM, SHIN, SHIN]), "e")
+    _limb(skin, centre, radii, 6, np.array([BOTTOM, BOTTOM, SHIN, SHIN]), "e")
     _shoe(skin, ankle, joints.toe[k])
 
 
@@ -165,7 +165,7 @@ def _arm(skin: Skin, joints: Pose, k: int) -> None:
         [inner[None], _along(shoulder, elbow, -0.02, 0.3, 0.95), _along(wrist, elbow, 0.0)]
     )
     radii = np.array([[0.06, 0.06], [0.06, 0.062], [0.05, 0.056], [0.042, 0.045], [0.03, 0.033]])
-    _limb(skin, centre, radii, 8, np.array([TOP, TOP, TOP, SLEEVE]), "s")
+    _limb(skin, centre, radii, 6, np.array([TOP, TOP, TOP, SLEEVE]), "s")
     hand = _along(wrist, finger, -0.05, 0.5, 1.0)
     _limb(
         skin, hand, np.array([[0.024, 0.032], [0.022, 0.046], [0.012, 0.025]]), 6, np.array([SKIN, SKIN]), "e"
