@@ -11,7 +11,7 @@ from scenegen_render.trace import noise
 from scenegen_render.trace.lit import Lit
 from scenegen_render.trace.troupe import Instant
 
-_OCTAVES = ((1.0, 1.0), (2.5, 0.63), (6.25, 0.4))
+_OCTAVES = ((1.0, 1.0), (3.6, 0.53), (13.0, 0.28))
 """Frequency and amplitude: power falls as 1/frequency per octave, the -3 slope of real aerial LWIR spectra."""
 _NORM = noise.UNIT / math.sqrt(sum(a * a for _, a in _OCTAVES))
 
