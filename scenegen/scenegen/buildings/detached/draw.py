@@ -70,7 +70,7 @@ def draw_home_style(
         head_m=sill + rng.uniform(1.15, 1.5),
         storey_m=storey,
         recess_m=rng.uniform(0.06, 0.14),
-        blank_share=rng.uniform(0.08, 0.3),
+        blank_share=rng.uniform(0.04, 0.2),
         unheated_share=traits.unheated_share,
     )
 

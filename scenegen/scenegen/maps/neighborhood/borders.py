@@ -21,7 +21,7 @@ _STYLES = (("board", 0.18, (1.5, 1.9)), ("picket", 0.16, (0.9, 1.2)), ("rail", 0
 """Style, share, range of height [m]."""
 
 _SHORTEST_M, _FRONT_M, _CLEAR_M = 4.0, 5.0, 0.5
-HEDGES_M = ((1.0, 0.6), (1.4, 0.8), (1.8, 0.9), (2.2, 1.1))
+_HEDGES_M = ((1.0, 0.6), (1.4, 0.8), (1.8, 0.9), (2.2, 1.1))
 """Height and width of the hedges there are."""
 
 
@@ -98,7 +98,7 @@ def plan_borders(
 
 def _line(points: np.ndarray, hedge: bool, kind: int, size: float) -> Line:
     if hedge:
-        return Line(points, "hedge", *HEDGES_M[int(size * len(HEDGES_M))])
+        return Line(points, "hedge", *_HEDGES_M[int(size * len(_HEDGES_M))])
     style, _, (low, high) = _STYLES[kind]
     return Line(points, style, low + size * (high - low), 0.1)
 

@@ -11,7 +11,7 @@ from jaxtyping import Bool, Float64
 
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along, clear_of, first_come
-from scenegen.maps.neighborhood.borders import HEDGES_M, Line, on_gardens
+from scenegen.maps.neighborhood.borders import Line, on_gardens
 from scenegen.maps.neighborhood.kerbside import Kerbside
 from scenegen.maps.neighborhood.parcels import Parcel
 from scenegen.maps.neighborhood.streets import CARRIAGEWAY_M, StreetPlan
@@ -25,7 +25,7 @@ _COMMONS = 2.6
 """How much denser trees stand on commons than in gardens."""
 _WIRE_GAP_M, _LOW_M = 0.9, 4.4
 _STREET_PITCH_M = (11.0, 19.0)
-_DETAIL, _SHRUBS = 0.46, 3
+_DETAIL, _SHRUBS = 0.5, 3
 """Share of the usual triangles of a tree, since there are a thousand; shrubs tried per garden."""
 
 
@@ -140,9 +140,10 @@ def build_greenery(
         mine = trees.species == name
         position = np.column_stack([trees.xy[mine], raised.relief(trees.xy[mine])])
         parts += plant(str(name), position, trees.height_m[mine], raised, rng, _DETAIL)
-    for height, width in HEDGES_M:
-        rows = [line.points for line in lines if line.style == "hedge" and line.height_m == height]
-        parts += hedges(rows, height, width, raised, rng)
+    rows = [line for line in lines if line.style == "hedge"]
+    for height, width, corners in sorted({(r.height_m, r.width_m, len(r.points)) for r in rows}):
+        alike = [r.points for r in rows if r.height_m == height and len(r.points) == corners]
+        parts += hedges(alike, height, width, raised, rng)
     place, size = _shrub_spots(parcels, blocked, trees, rng)
     position = np.column_stack([place, raised.relief(place)])
     return parts + shrubs(position, size, rng.uniform(0.0, 2 * np.pi, len(place)), raised, rng)

@@ -24,7 +24,7 @@ _FINE_M, _COARSE_M, _NEAR_M = 3.0, 4.6, 3.5
 _WALL_ROW = (1.9, 1.0)
 """Spacing, distance: the row of points along walls, and the spacing on the contact line itself."""
 _LINE_M, _CAR_LINE_M = 3.4, 1.6
-_CAR_ROW = (2.0, 0.7)
+_CAR_ROW, _FENCE_ROW = (2.0, 0.7), (2.6, 0.8)
 _ROAD_GRAIN_M, _GRAIN_M = 0.7, 1.1
 _TUCK_M, _SILL_M, _GRID_M = 0.01, 0.15, 0.002
 _WATER_BELOW_M = 0.14
@@ -35,6 +35,7 @@ def build_ground(
     parcels: Sequence[Parcel],
     holes: Sequence[shapely.Polygon],
     cars: np.ndarray,
+    borders: np.ndarray,
     shop: NeighborhoodWorkshop,
     rng: np.random.Generator,
 ) -> tuple[Part, Triangulation]:
@@ -48,6 +49,8 @@ def build_ground(
         Where houses, porches and sheds stand.
     cars : array of shapely.Polygon
         Plan of each standing car.
+    borders : array of shapely.LineString
+        Fences and hedges: they cast shadows on both sides.
     shop : NeighborhoodWorkshop
     rng : numpy.random.Generator
     """
@@ -63,21 +66,26 @@ def build_ground(
     regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in whole]
     regions = [replace(r, grain_m=_grain(r)) for r in regions]
     half = float(np.abs(plan.outline.bounds).max())
+    strips = shapely.buffer(borders, 0.05, cap_style="flat")
     plane = triangulate(
         [r.outline for r in regions],
-        _lattice(plan, whole, cars, rng),
+        _lattice(plan, whole, cars, borders, rng),
         np.array([_line_spacing(r) for r in regions]),
         (half * 1.03, 0.2),
-        contact_points(list(cars), *_CAR_ROW),
+        np.concatenate([contact_points(list(cars), *_CAR_ROW), contact_points(list(strips), *_FENCE_ROW)]),
     )
     return drape(plane, regions, shop.relief), plane
 
 
 def _lattice(
-    plan: StreetPlan, solid: Sequence[shapely.Polygon], cars: np.ndarray, rng: np.random.Generator
+    plan: StreetPlan,
+    solid: Sequence[shapely.Polygon],
+    cars: np.ndarray,
+    borders: np.ndarray,
+    rng: np.random.Generator,
 ) -> np.ndarray:
-    """Free points: a row along walls, a lattice that is finer near walls and cars, coarser bands farther out."""
-    near = shapely.STRtree(np.concatenate([np.asarray(solid, dtype=object), cars]))
+    """Free points: a row along walls, a lattice that is finer near what casts shadows, coarser bands farther out."""
+    near = shapely.STRtree(np.concatenate([np.asarray(solid, dtype=object), cars, borders]))
 
     def close(points: np.ndarray, reach_m: float) -> np.ndarray:
         mask = np.zeros(len(points), bool)

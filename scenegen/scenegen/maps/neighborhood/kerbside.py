@@ -49,7 +49,7 @@ class Kerbside:
     lamps: Float64[np.ndarray, "lamps 3"]
     signs: Float64[np.ndarray, "signs 3"]
     boxes: Float64[np.ndarray, "boxes 3"]
-    poles: tuple[Float64[np.ndarray, "poles 3"], ...]
+    poles: tuple[Float64[np.ndarray, "_ 3"], ...]
     spans: Float64[np.ndarray, "spans 2 2"]
     drops: tuple[tuple[int, np.ndarray, np.ndarray], ...]
 

@@ -31,10 +31,10 @@ class NeighborhoodKnobs(Section):
     extent_m: Annotated[Span, AfterValidator(_within(220.0, 700.0))] = (540.0, 590.0)
     """Side of the square the street network is drawn in [m], 220 to 700; gardens reach a little beyond."""
 
-    lot_width_m: Annotated[Span, AfterValidator(_within(14.0, 45.0))] = (18.0, 25.0)
+    lot_width_m: Annotated[Span, AfterValidator(_within(14.0, 45.0))] = (20.0, 27.0)
     """Usual width of lots along the street [m]."""
 
-    lot_depth_m: Annotated[Span, AfterValidator(_within(24.0, 55.0))] = (29.0, 37.0)
+    lot_depth_m: Annotated[Span, AfterValidator(_within(24.0, 55.0))] = (31.0, 38.0)
     """Usual depth of lots [m]: half the distance between parallel streets, without the streets."""
 
     street_curvature: Annotated[Span, AfterValidator(_within(0.0, 1.5))] = (0.5, 1.1)
@@ -67,7 +67,7 @@ class NeighborhoodKnobs(Section):
     shed_share: Share = (0.3, 0.6)
     """Share of gardens with a shed."""
 
-    trees_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 16.0))] = (1.4, 2.6)
+    trees_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 16.0))] = (2.0, 3.2)
     """Trees in gardens and commons."""
 
     conifer_share: Share = (0.1, 0.4)
@@ -79,7 +79,7 @@ class NeighborhoodKnobs(Section):
     hedge_share: Annotated[Span, AfterValidator(_within(0.0, 0.8))] = (0.03, 0.1)
     """Share of garden borders with a hedge."""
 
-    fence_share: Annotated[Span, AfterValidator(_within(0.0, 0.9))] = (0.18, 0.36)
+    fence_share: Annotated[Span, AfterValidator(_within(0.0, 0.9))] = (0.14, 0.3)
     """Share of the other garden borders with a fence."""
 
     driveway_cars: Annotated[Span, AfterValidator(_within(0.0, 2.0))] = (0.6, 1.1)

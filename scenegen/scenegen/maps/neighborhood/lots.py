@@ -37,7 +37,7 @@ class Division:
     """
 
     lots: tuple[Lot, ...]
-    borders: tuple[Float64[np.ndarray, "points 2"], ...]
+    borders: tuple[Float64[np.ndarray, "_ 2"], ...]
     between: np.ndarray
 
 

@@ -74,7 +74,7 @@ def build_neighborhood(knobs: NeighborhoodKnobs, season: Season, rng: np.random.
     trees = plan_trees(plan, parcels, blocked, shop, tree_rng)
 
     builder = shop.builder
-    land, plane = build_ground(plan, parcels, holes, spots.plan, shop, ground)
+    land, plane = build_ground(plan, parcels, holes, spots.plan, blocked.lines, shop, ground)
     builder.add(land, home_walls(homes, walls), home_roofs(homes), *home_features(homes, walls))
     builder.add(*build_kerbside(kerbside, homes, shop, posts_rng), *build_fences(borders, shop, border_rng))
     builder.add(*build_traffic(spots, shop, cars_rng))

@@ -34,7 +34,7 @@ class Network:
         End points of lines that leave, and their directions.
     """
 
-    lines: tuple[Float64[np.ndarray, "points 2"], ...]
+    lines: tuple[Float64[np.ndarray, "_ 2"], ...]
     dead_end: tuple[tuple[bool, bool], ...]
     exits: Float64[np.ndarray, "exits 2 2"]
 
@@ -93,10 +93,11 @@ def _edges(y: np.ndarray, reach: np.ndarray, links: list[np.ndarray]) -> list[np
     """All stretches between nodes, rows first."""
     edges = []
     for k in range(len(y)):
-        nodes = [*links[k - 1 : k], *links[k : k + 1]]
-        x = np.unique(np.concatenate([*nodes, [-reach[k], reach[k]]]))
-        x = x[1 if len(x) > 3 and x[1] - x[0] < _SHORTEST_END_M else 0 :]
-        x = x[: -1 if len(x) > 3 and x[-1] - x[-2] < _SHORTEST_END_M else None]
+        x = np.unique(np.concatenate([*links[max(k - 1, 0) : k], *links[k : k + 1]]))
+        # A row goes on beyond its last link only if there is room for a few houses.
+        before = [-reach[k]] if x[0] + reach[k] > _SHORTEST_END_M else []
+        after = [reach[k]] if reach[k] - x[-1] > _SHORTEST_END_M else []
+        x = np.concatenate([before, x, after])
         edges += [np.array([[a, y[k]], [b, y[k]]]) for a, b in zip(x[:-1], x[1:], strict=True)]
     for k, row in enumerate(links):
         edges += [np.array([[x, y[k]], [x, y[k + 1]]]) for x in row]
@@ -130,7 +131,10 @@ def _cut(
         elif length - gap - 8.0 > _SHORTEST_STUB_M:
             start, sign = (a, 1.0) if rng.uniform() < 0.5 else (b, -1.0)
             stubs.append(np.array([start, start + sign * (length - gap - 8.0) * step]))
-    return [e for e, stay in zip(edges, keep, strict=True) if stay], stubs
+    kept = [e for e, stay in zip(edges, keep, strict=True) if stay]
+    nodes = np.concatenate(kept)
+    rooted = [s for s in stubs if np.linalg.norm(nodes - s[0], axis=1).min() < 0.01]  # its root may be gone by now
+    return kept, rooted
 
 
 def _connected(kept: list[np.ndarray], edges: list[np.ndarray]) -> bool:

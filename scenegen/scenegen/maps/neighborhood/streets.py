@@ -50,7 +50,7 @@ class StreetPlan:
         Where streets leave, and in which direction.
     """
 
-    lines: tuple[Float64[np.ndarray, "points 2"], ...]
+    lines: tuple[Float64[np.ndarray, "_ 2"], ...]
     dead_end: tuple[tuple[bool, bool], ...]
     carriageway: shapely.Polygon
     verge_m: float
