@@ -43,14 +43,23 @@ def test_a_material_is_drawn_once_and_picked_among_its_variants():
     assert picks == set(first)
 
 
-def test_special_variants_count_and_keep_what_they_are_given():
+def test_special_variants_keep_what_they_are_given():
     palette = PaletteBuilder(np.random.default_rng(0))
     pond = palette.special("water_fresh_or_sea", "pond", prescribed_K=288.0)
     assert palette.special("water_fresh_or_sea", "pond", prescribed_K=300.0) == pond
     assert palette.surfaces()[pond].prescribed_K == 288.0
-    palette.variants("asphalt_aged", 4)
+    rolling = palette.special("tyre_rubber", "rolling", released_Wm2=250.0)
+    tyre = palette.surfaces()[rolling]
+    assert tyre.released_Wm2 == 250.0 and np.isnan(tyre.interior_K)
+
+
+def test_drawn_and_special_variants_are_bounded_whoever_comes_first():
+    palette = PaletteBuilder(np.random.default_rng(0))
+    palette.variants("car_paint_white", 4)
+    keys = [palette.special("car_paint_white", str(k), interior_K=330.0 + k) for k in range(4)]
+    assert len(set(keys)) == 4
     with pytest.raises(AssertionError):
-        palette.special("asphalt_aged", "paint", solar_absorptance=0.5)
+        palette.special("car_paint_white", "one too many", interior_K=350.0)
 
 
 def test_an_unknown_material_names_the_nearest():

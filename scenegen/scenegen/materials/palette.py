@@ -11,7 +11,11 @@ from scenegen.materials.material import Build, Material, Surface
 from scenegen.materials.table import material
 
 MAX_VARIANTS = 4
-"""Variants of one material in one world, at most."""
+"""Drawn variants of one material in one world, at most."""
+
+MAX_SPECIALS = 4
+"""Variants with properties of their own besides (paint, a pond, a bonnet over an engine), at most. They count apart,
+because what is warm must not depend on which subsystem drew its variants first."""
 
 ABSORPTANCE_SPREAD = 0.06
 """Half-width of the spread of solar absorptance around the table's value: soiling, age, colour."""
@@ -77,7 +81,7 @@ class PaletteBuilder:
     ) -> int:
         """Add a variant with properties of its own (paint on asphalt, a bonnet over a hot engine), once per key.
 
-        Counts towards the variants of the material; the key separates it from the drawn ones.
+        At most `MAX_SPECIALS` per material; what was made first under a key stays.
         """
         entry = f"{name}/{key}"
         if entry not in self._variants:
@@ -96,7 +100,7 @@ class PaletteBuilder:
                     )
                 ),
             )
-            assert sum(s.material.name == name for s in self._surfaces) <= MAX_VARIANTS
+            assert sum(key.startswith(f"{name}/") for key in self._variants) <= MAX_SPECIALS
         return self._variants[entry][0]
 
     def surfaces(self) -> tuple[Surface, ...]:
