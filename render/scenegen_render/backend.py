@@ -21,7 +21,7 @@ from types import ModuleType
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float32, UInt32
+from jaxtyping import Bool, Float32, UInt32
 
 from scenegen.foundation.errors import BackendError
 
@@ -111,14 +111,16 @@ def set_threads(requested: int) -> int:
     return granted
 
 
-def upload(values: Float32[np.ndarray, "*shape"] | UInt32[np.ndarray, "*shape"]) -> Any:
-    """Copy an array to the device, flattened: float32 to `mitsuba.Float`, uint32 to `mitsuba.UInt`.
+def upload(
+    values: Float32[np.ndarray, "*shape"] | UInt32[np.ndarray, "*shape"] | Bool[np.ndarray, "*shape"],
+) -> Any:
+    """Copy an array to the device, flattened: float32 to `mitsuba.Float`, uint32 to `mitsuba.UInt`, bool to `Bool`.
 
     Always a copy: handed a numpy array, Dr.Jit would only map its memory, whose alignment differs from run to run,
     compile another kernel for each alignment, and read it element by element where it is not aligned.
     """
     mi, dr = modules()
-    kind = mi.Float if values.dtype == np.float32 else mi.UInt
+    kind = {"f": mi.Float, "u": mi.UInt, "b": mi.Bool}[values.dtype.kind]
     return dr.opaque(kind(np.ascontiguousarray(values).reshape(-1)))
 
 

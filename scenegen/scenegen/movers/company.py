@@ -36,6 +36,8 @@ class Company:
     movers : tuple of Mover
     body : Part
         Their rest poses, merged in order, each in its own frame.
+    first : int64 (movers + 1,)
+        First vertex of each mover, and the number of all.
     owner, site_owner : int64 (vertices,), int64 (sites,)
         Mover of each vertex and of each thermal site.
     site_surface : int64 (sites,)
@@ -50,6 +52,7 @@ class Company:
 
     movers: tuple[Mover, ...]
     body: Part
+    first: Int64[np.ndarray, "ends"]
     owner: Int64[np.ndarray, "vertices"]
     site_owner: Int64[np.ndarray, "sites"]
     site_surface: Int64[np.ndarray, "sites"]
@@ -70,6 +73,7 @@ class Company:
         return Company(
             movers=tuple(movers),
             body=body,
+            first=first.astype(np.int64),
             owner=np.repeat(np.arange(len(movers)), counts),
             site_owner=np.repeat(np.arange(len(movers)), [len(m.body.site_position) for m in movers]),
             site_surface=surface,
@@ -102,10 +106,7 @@ class Company:
         if len(self.walking):
             rest = rest.copy()
             rest[self.walkers.vertex] = self.walkers.step(state[self.walking, TRAVELLED])
-        pose = matrices(state)[:, :3]
-        x, y, z = np.ascontiguousarray(rest.T)
         world = np.empty((len(rest), 3))
-        for row in range(3):
-            a, b, c, shift = pose[:, row].T[:, self.owner]
-            world[:, row] = a * x + b * y + c * z + shift
+        for pose, first, last in zip(matrices(state), self.first[:-1], self.first[1:], strict=True):
+            world[first:last] = np.einsum("ij,nj->ni", pose[:3, :3], rest[first:last]) + pose[:3, 3]
         return world

@@ -20,7 +20,7 @@ MIX: Mapping[str, float] = {"car": 0.84, "van": 0.1, "bus": 0.03, "truck": 0.03}
 
 
 def drive(
-    lanes: Sequence[Float64[np.ndarray, "points 2"]],
+    lanes: Sequence[Float64[np.ndarray, "_ 2"]],
     per_100_m: float,
     shop: Workshop,
     rng: np.random.Generator,

@@ -21,7 +21,7 @@ FLEET: Mapping[str, float] = {"motor": 0.45, "sailing": 0.35, "fishing": 0.2}
 
 
 def sail(
-    rings: Sequence[Float64[np.ndarray, "points 2"]],
+    rings: Sequence[Float64[np.ndarray, "_ 2"]],
     per_km: float,
     shop: Workshop,
     rng: np.random.Generator,

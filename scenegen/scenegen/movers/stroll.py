@@ -18,7 +18,7 @@ _DISTANCE_S = 2.5
 
 
 def stroll(
-    ways: Sequence[Float64[np.ndarray, "points 2"]],
+    ways: Sequence[Float64[np.ndarray, "_ 2"]],
     per_100_m: float,
     shop: Workshop,
     rng: np.random.Generator,
