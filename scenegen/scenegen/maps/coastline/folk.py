@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import shapely
+from jaxtyping import Float64
 
 from scenegen.geometry.part import Part
 from scenegen.maps.coastline.layout import Layout
@@ -16,7 +17,7 @@ _POSTURES = ("standing", "walking", "running")
 
 
 def build_folk(
-    layout: Layout, huts: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator
+    layout: Layout, huts: Float64[np.ndarray, "huts 3"], shop: CoastWorkshop, rng: np.random.Generator
 ) -> tuple[list[Part], int]:
     """People as parts, and their number.
 
@@ -52,13 +53,13 @@ def build_folk(
 
 
 def _on_pier(layout: Layout, wanted: int, rng: np.random.Generator) -> np.ndarray:
-    """Places on the deck, apart from each other and from lamps, benches and bins."""
+    """Places along the right railing, apart from each other, from benches and from those who walk in the middle."""
     start, end = layout.pier
     length = float(np.linalg.norm(end - start))
     ahead = (end - start) / length
     cell = rng.permutation(int((length - 6.0) / _APART_M))[:wanted]
     mark = 3.0 + _APART_M * cell + rng.uniform(-0.2, 0.2, len(cell))
-    side = rng.uniform(-0.18, 0.18, len(cell)) * WIDTH_M
+    side = 0.28 * WIDTH_M + rng.uniform(-0.06, 0.06, len(cell))
     xy = start + mark[:, None] * ahead + side[:, None] * np.array([ahead[1], -ahead[0]])
     return np.column_stack([xy, np.full(len(xy), layout.pier_deck_m)])
 

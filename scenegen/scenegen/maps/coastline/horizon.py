@@ -16,7 +16,8 @@ from scenegen.maps.coastline.workshop import CoastWorkshop
 
 _NEAREST_M, _REACH_M = 30.0, 4200.0
 _GROVES, _FARMS = 420, 150
-_ROOTED_M = 3.0
+_BURIED = 0.15
+"""Share of a wood's vertices that are below the ground."""
 
 
 def build_horizon(rock: str, ground: Part, shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:
@@ -96,10 +97,11 @@ def _groves(foot: np.ndarray, size: np.ndarray, shop: CoastWorkshop, rng: np.ran
     leaves = np.array(shop.palette.variants("tree_crown"), np.int64)
     skins = leaves[rng.integers(len(leaves), size=len(foot))][:, None]
     owner = shop.builder.new_objects(len(foot)) + np.arange(len(foot))
-    tall = rng.uniform(7.0, 13.0, len(foot))
-    position = foot - np.array([0.0, 0.0, _ROOTED_M])
-    scale = np.column_stack([size, size, tall + _ROOTED_M])
-    return place(grove(rng), position, rng.uniform(0.0, 2 * np.pi, len(foot)), scale, skins, owner)
+    template = grove(rng)
+    rooted = float(np.quantile(template.vertices[:, 2], _BURIED))
+    scale = np.column_stack([size, size, rng.uniform(9.0, 15.0, len(foot))])
+    position = foot - np.array([0.0, 0.0, rooted]) * scale
+    return place(template, position, rng.uniform(0.0, 2 * np.pi, len(foot)), scale, skins, owner)
 
 
 def _islets(rock: str, shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:

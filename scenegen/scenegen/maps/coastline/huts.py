@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from jaxtyping import Float64
 
 from scenegen.classes import Semantic
 from scenegen.geometry.modelling import Modeller
@@ -54,7 +55,7 @@ def hut(length_m: float = 3.0, width_m: float = 2.4, eaves_m: float = 2.1, ridge
     return model.finish()
 
 
-def draw_huts(shop: CoastWorkshop, rng: np.random.Generator) -> np.ndarray:
+def draw_huts(shop: CoastWorkshop, rng: np.random.Generator) -> Float64[np.ndarray, "huts 3"]:
     """Places and headings (x, y, rad) in rows at the dune foot, doors to the sea; claims their ground."""
     coast, wanted = shop.coast, round(rng.uniform(*shop.knobs.huts))
     along = np.arange(-1.3 * coast.half_m, 1.3 * coast.half_m, 3.9)
@@ -73,7 +74,10 @@ def draw_huts(shop: CoastWorkshop, rng: np.random.Generator) -> np.ndarray:
 
 
 def build_huts(
-    rows: np.ndarray, height_m: np.ndarray, shop: CoastWorkshop, rng: np.random.Generator
+    rows: Float64[np.ndarray, "huts 3"],
+    height_m: Float64[np.ndarray, "huts"],
+    shop: CoastWorkshop,
+    rng: np.random.Generator,
 ) -> list[Part]:
     """Huts at given places (x, y, rad) and heights [m] of their floor, in three sizes."""
     count = len(rows)
@@ -98,7 +102,7 @@ def build_huts(
     return parts
 
 
-def standing_height(rows: np.ndarray, shop: CoastWorkshop) -> np.ndarray:
+def standing_height(rows: Float64[np.ndarray, "huts 3"], shop: CoastWorkshop) -> Float64[np.ndarray, "huts"]:
     """Height [m] of the floor of huts: just above the highest sand around them."""
     tilt = np.abs(slopes(shop.relief, rows[:, :2])).sum(axis=1)
     return np.asarray(shop.relief(rows[:, :2]) + np.minimum(1.1 * tilt, 0.5))

@@ -161,7 +161,7 @@ def _road(coast: Coast) -> shapely.LineString:
     return shapely.LineString(coast.frame.world(np.column_stack([s, coast.road(s)])))
 
 
-def far_stations(coast: Coast) -> np.ndarray:
+def far_stations(coast: Coast) -> Float64[np.ndarray, "stations"]:
     """Distances along the shore, close together in the detailed square, ever farther apart beyond."""
     near = np.arange(0.0, 1.45 * coast.half_m, 3.5)
     tail, step = [float(near[-1])], 3.5

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float64
+from jaxtyping import Bool, Float64
 from scipy.interpolate import CubicSpline
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d
 
@@ -122,7 +122,7 @@ class Coast:
         r = self.half_m - margin_m
         return (-r, -r, r, r)
 
-    def inside(self, xy: Float64[np.ndarray, "points 2"], margin_m: float) -> np.ndarray:
+    def inside(self, xy: Float64[np.ndarray, "points 2"], margin_m: float) -> Bool[np.ndarray, "points"]:
         """Which points lie in the detailed square, away from its edge."""
         return np.asarray(np.abs(xy).max(axis=1) < self.half_m - margin_m)
 
