@@ -7,7 +7,7 @@ says; its texture stays on it; what shows no mover does not change by a bit.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -274,3 +274,40 @@ def test_movers_that_stand_flow_like_the_world(lit: Lit, tracer: Tracer) -> None
     expected = local[..., :2] / local[..., 2:] * CAMERA.focal_px + CAMERA.centre_px - place
     seen = on_movers(frozen)
     np.testing.assert_allclose(frozen.flow[seen], expected[seen], atol=2e-3)
+
+
+def test_frames_with_and_without_movers_run_the_same_kernels(
+    loaded: LoadedWorld, state: ThermalState, sky_light: np.ndarray
+) -> None:
+    _, dr = backend.modules()
+    tracer = Tracer(CAMERA, RenderKnobs(sub_samples=3, backward_flow=True))
+
+    def kernels(cast: Sequence[int], count: int) -> set[object]:
+        dr.kernel_history_clear()
+        with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
+            lit = tracer.light(loaded, state, sky_light, cast)
+            for (pose, ahead, behind), times in list(shots())[:count]:
+                tracer.frame(lit, pose, ahead, behind, times)
+            history = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
+        return {entry["hash"] for entry in history}
+
+    empty, one, all_ = kernels((), 1), kernels((3,), 2), kernels(range(len(loaded.world.movers)), 4)
+    assert len(empty) >= 2
+    assert empty == one == all_
+
+
+def test_an_instant_is_the_same_however_it_was_reached(
+    loaded: LoadedWorld, state: ThermalState, sky_light: np.ndarray, tracer: Tracer
+) -> None:
+    """Scenes are used again for other times: order must not show."""
+    cast = range(len(loaded.world.movers))
+    in_order = tracer.light(loaded, state, sky_light, cast)
+    wanted = list(shots())
+    first = [tracer.frame(in_order, *poses, times) for poses, times in wanted]
+    backwards = tracer.light(loaded, state, sky_light, cast)
+    second = [tracer.frame(backwards, *poses, times) for poses, times in wanted[::-1]][::-1]
+    for a, b in zip(first, second, strict=True):
+        for name, layer in vars(a).items():
+            assert (
+                np.ascontiguousarray(layer).tobytes() == np.ascontiguousarray(getattr(b, name)).tobytes()
+            ), name
