@@ -21,8 +21,8 @@ _PER_HECTARE = (6.0, 18.0)
 def build_bales(
     country: Country, taken: np.ndarray, half_m: float, shop: FieldWorkshop, rng: np.random.Generator
 ) -> tuple[list[Part], np.ndarray]:
-    """Bales along the swaths of hay meadows in and near the detailed square, and their plans."""
-    room = shapely.box(-half_m, -half_m, half_m, half_m).buffer(60.0)
+    """Bales along the swaths of hay meadows of the detailed square, and their plans."""
+    room = shapely.box(-half_m, -half_m, half_m, half_m)
     rows = [np.zeros((0, 3))]
     for parcel in country.parcels:
         meadow = parcel.outline.buffer(-6.0).intersection(room)
@@ -53,7 +53,7 @@ def build_bales(
 def bale() -> Template:
     """A round bale that lies on z = 0, its axis along y, sunk in a little. Slot: 0. Five sites."""
     model = Modeller()
-    sink = 0.06
+    sink = 0.1
     angle = 2 * np.pi * np.arange(_SIDES) / _SIDES
     rim = RADIUS_M * np.column_stack([np.cos(angle), np.zeros(_SIDES), np.sin(angle)])
     middle = np.array([0.0, 0.0, RADIUS_M - sink])
