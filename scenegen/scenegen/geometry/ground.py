@@ -189,7 +189,9 @@ def _site_frame(
         return np.stack(columns, axis=1)
 
     normal = mean(normals)
-    normal = normal / np.linalg.norm(normal, axis=1)[:, None]
+    length = np.linalg.norm(normal, axis=1)[:, None]
+    # A site all of whose triangles are slivers has no normal; it goes with them when parts are merged.
+    normal = np.where(length > 0.0, normal / np.maximum(length, 1e-300), np.array([0.0, 0.0, 1.0]))
     pull = mean(vertices[faces].mean(axis=1)) - position
     length = np.linalg.norm(pull, axis=1)
     return position + pull * np.minimum(_NUDGE_M / np.maximum(length, 1e-9), 0.5)[:, None], normal

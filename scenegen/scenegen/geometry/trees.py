@@ -45,7 +45,9 @@ def grove(rng: np.random.Generator, crowns: int = 6) -> Template:
     for r, a in zip(reach, angle, strict=True):
         tall = rng.uniform(0.68, 1.0) * (1.0 - 0.5 * r)
         size = np.array([1.0, 1.0, 0.0]) * rng.uniform(0.15, 0.24) + np.array([0.0, 0.0, tall / 2])
-        lump = ball * rng.uniform(0.75, 1.0, (12, 1)) * size + np.array([r * np.cos(a), r * np.sin(a), tall / 2])
+        lump = ball * rng.uniform(0.75, 1.0, (12, 1)) * size + np.array(
+            [r * np.cos(a), r * np.sin(a), tall / 2]
+        )
         lump[np.argmin(lump[:, 2]), 2] = _FOOT
         site = first[0] + np.argmax((lump - _CENTRE) @ way.T, axis=1)
         model.mesh(lump, _ICOSAHEDRON_FACES, 0, Semantic.TREE, site[_ICOSAHEDRON_FACES])

@@ -39,9 +39,22 @@ def build_city(knobs: CityKnobs, season: Season, rng: np.random.Generator) -> Wo
     rng : numpy.random.Generator
         The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
     """
-    own, streets, hills, skins, lots, parks_rng, ground, walls, gear_rng, cars_rng, posts_rng, green, far, on = (
-        rng.spawn(14)
-    )
+    (
+        own,
+        streets,
+        hills,
+        skins,
+        lots,
+        parks_rng,
+        ground,
+        walls,
+        gear_rng,
+        cars_rng,
+        posts_rng,
+        green,
+        far,
+        on,
+    ) = rng.spawn(14)
     extent = own.uniform(*knobs.extent_m)
     palette, builder = PaletteBuilder(skins), GeometryBuilder()
     palette.variants("asphalt_aged", 3)  # the fourth is its paint
@@ -54,12 +67,13 @@ def build_city(knobs: CityKnobs, season: Season, rng: np.random.Generator) -> Wo
     traffic = plan_traffic(plan, layout, knobs, cars_rng)
     land = plan_far(plan, far)
 
-    builder.add(build_terrain(plan, layout, parks, traffic.outlines(), land.outlines(), shop, ground))
+    terrain = build_terrain(plan, layout, parks, traffic.outlines(), land.outlines(), shop, ground)
+    builder.add(terrain)
     builder.add(build_shells(layout.buildings, gear.plans, walls), *gear.parts)
     cars = build_traffic(traffic, shop, cars_rng)
     furniture, posts = build_furniture(plan, parks, shop, posts_rng)
     trees, tree_count = build_greenery(layout, parks, posts, shop, green)
-    builder.add(*cars, *furniture, *trees, *far_objects(land, shop, far))
+    builder.add(*cars, *furniture, *trees, *far_objects(land, plan, terrain, shop, far))
     movers = plan_motion(plan, shop, on)
     merged = builder.merge()
     half = _inner_half(plan.outline)

@@ -46,7 +46,7 @@ def plan_motion(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) 
     return (*movers, *stroll(_sidewalks(plan, ways_rng), people, shop, walkers, lift_m=_KERB_M))
 
 
-def _lanes(plan: StreetPlan) -> list[Float64[np.ndarray, "points 2"]]:
+def _lanes(plan: StreetPlan) -> list[Float64[np.ndarray, "_ 2"]]:
     """Lane around each block: its surroundings less what lies nearer to a centre line than the lane's middle."""
     inner = shapely.union_all(
         [shapely.LineString(s.line).buffer(_LANE_M[s.rank], quad_segs=4) for s in plan.streets]
@@ -73,7 +73,7 @@ def _ring(plan: StreetPlan) -> Float64[np.ndarray, "points 2"]:
     return np.asarray(shapely.get_coordinates(orient(way, 1.0).exterior))
 
 
-def _sidewalks(plan: StreetPlan, rng: np.random.Generator) -> list[Float64[np.ndarray, "points 2"]]:
+def _sidewalks(plan: StreetPlan, rng: np.random.Generator) -> list[Float64[np.ndarray, "_ 2"]]:
     """Way around each block on its sidewalk, one way or the other."""
     ways = []
     for block, turn in zip(plan.blocks, rng.choice([-1.0, 1.0], len(plan.blocks)), strict=True):

@@ -13,6 +13,7 @@ from scenegen.geometry.ground import Region
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import clear_of, first_come, rectangles
+from scenegen.geometry.standing import mesh_heights
 from scenegen.geometry.template import place
 from scenegen.geometry.trees import grove
 from scenegen.maps.city.streets import StreetPlan
@@ -111,12 +112,18 @@ def plan_far(plan: StreetPlan, rng: np.random.Generator) -> FarPlan:
     return FarPlan(centre[keep], size[keep], heading[keep], built[keep])
 
 
-def far_objects(far: FarPlan, shop: CityWorkshop, rng: np.random.Generator) -> list[Part]:
-    """What was planned, as parts."""
+def far_objects(
+    far: FarPlan, plan: StreetPlan, ground: Part, shop: CityWorkshop, rng: np.random.Generator
+) -> list[Part]:
+    """What was planned, as parts that stand on the mesh of the ground."""
+    shapely.prepare(plan.outline)
+    inside = shapely.contains_xy(plan.outline, ground.vertices[:, :2])
+    height = mesh_heights(ground, ~inside[ground.faces].all(axis=1), far.centre, shop.relief)
+    centre = np.column_stack([far.centre, height])
     built, grown = far.built, ~far.built
     return [
-        _plain_buildings(far.centre[built], far.size[built], far.heading_rad[built], shop, rng),
-        _groves(far.centre[grown], far.size[grown], shop, rng),
+        _plain_buildings(centre[built], far.size[built], far.heading_rad[built], shop, rng),
+        _groves(centre[grown], far.size[grown], shop, rng),
     ]
 
 
@@ -144,7 +151,7 @@ def _plain_buildings(
         slot=np.where(roof, 1, 0),
         semantic=np.where(roof, int(Semantic.ROOF), int(Semantic.WALL)),
     )
-    base = np.column_stack([centre, shop.relief(centre) - 1.5])
+    base = centre - np.array([0.0, 0.0, 1.5])
     owner = shop.builder.new_objects(len(centre)) + np.arange(len(centre))
     scale = size + np.array([0, 0, 1.5])
     return place(template, base, heading, scale, np.column_stack([wall, roofs]), owner)
@@ -159,8 +166,7 @@ def _groves(
     skin = np.array([[shop.palette.pick("tree_crown", rng)] for _ in range(len(centre))], np.int64).reshape(
         -1, 1
     )
-    position = np.column_stack([centre, shop.relief(centre)])
     scale = np.column_stack([size[:, 0], size[:, 0], rng.uniform(7.0, 13.0, len(centre))])
     first = shop.builder.new_objects(len(centre))
     heading = rng.uniform(0.0, 2 * np.pi, len(centre))
-    return place(grove(rng), position, heading, scale, skin, first + np.arange(len(centre)))
+    return place(grove(rng), centre, heading, scale, skin, first + np.arange(len(centre)))
