@@ -30,11 +30,10 @@ def test_shrubs_stay_in_their_boxes_and_root_in_the_ground(workshop, row):
 
 def test_half_of_the_kinds_of_shrubs_are_bare_in_winter(workshop, row):
     count = 60
-    parts = shrubs(
-        row(count), np.ones((count, 3)), np.zeros(count), workshop(season=JANUARY), np.random.default_rng(2)
-    )
-    bark = set(workshop().palette.variants("bark_trunk"))
-    bare = [set(np.unique(p.surface)) <= bark for p in parts]
+    shop = workshop(season=JANUARY)
+    parts = shrubs(row(count), np.ones((count, 3)), np.zeros(count), shop, np.random.default_rng(2))
+    twigs = set(shop.palette.variants("twigs_bare"))
+    bare = [set(np.unique(p.surface)) <= twigs for p in parts]
     assert sum(bare) == 2 and len(bare) == 4
     assert all((p.semantic == int(Semantic.SHRUB)).all() for p in parts)
 

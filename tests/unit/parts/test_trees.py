@@ -12,7 +12,7 @@ from scenegen.parts.vegetation.growth import Plan
 from scenegen.parts.vegetation.outline import half_width
 from scenegen.parts.vegetation.plant import crown_radius_m, plant, triangles
 from scenegen.parts.vegetation.species import SPECIES, Species
-from scenegen.parts.vegetation.tree import BARK, LEAVES, tree
+from scenegen.parts.vegetation.tree import BARK, LEAVES, TWIGS, tree
 
 DECIDUOUS = sorted(name for name, s in SPECIES.items() if not s.evergreen)
 TRUNK_SITES = 3
@@ -48,7 +48,7 @@ def test_height_is_exact_and_nothing_leaves_the_crown_radius(workshop, row, name
     position = row(9) + np.array([0.0, 0.0, 2.0])
     shop = workshop(season=MONTHS[month])
     parts = plant(name, position, height, shop, np.random.default_rng(1))
-    barks = shop.palette.variants("bark_trunk")
+    barks = [i for name in ("bark_trunk", "twigs_bare") for i in shop.palette.variants(name)]
     radius = crown_radius_m(name, height)
     seen = np.zeros(9, bool)
     for part in parts:
@@ -75,7 +75,7 @@ def test_sky_shines_through_a_crown_as_through_real_ones(name):
 @pytest.mark.parametrize("name", DECIDUOUS)
 def test_a_bare_tree_shows_its_branches_and_the_sky(name):
     bare = model(name, in_leaf=0.0)
-    assert set(bare.slot) == {BARK}
+    assert set(bare.slot) == {BARK, TWIGS}
     assert 0.5 < gap_share(bare, SPECIES[name], 0) < 0.93
     half = model(name, in_leaf=0.5)
     assert (
@@ -109,11 +109,12 @@ def test_rays_that_leave_a_leaf_site_outwards_never_meet_a_leaf(name):
 @pytest.mark.parametrize("name", DECIDUOUS)
 def test_rays_that_leave_a_bare_crown_outwards_never_meet_a_branch(name):
     made = model(name, in_leaf=0.0)
-    limbs = made.corner_site[:, 0] >= TRUNK_SITES
-    corners = made.vertices[made.faces[limbs]].reshape(-1, 3)
-    assert limbs.mean() > 0.8
-    for k in np.unique(made.corner_site[limbs]):
-        assert ((corners - made.site_position[k]) @ made.site_normal[k]).max() < 0.0
+    for slot in (BARK, TWIGS):
+        mine = (made.slot == slot) & (made.corner_site[:, 0] >= TRUNK_SITES)
+        corners = made.vertices[made.faces[mine]].reshape(-1, 3)
+        assert mine.sum() > 60
+        for k in np.unique(made.corner_site[mine]):
+            assert ((corners - made.site_position[k]) @ made.site_normal[k]).max() < 0.0
 
 
 def test_leaves_take_the_site_of_their_side():
@@ -133,7 +134,7 @@ def test_each_branch_of_a_bare_tree_has_a_sunny_side():
     normal = np.cross(b - a, c - a)
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     agrees = np.einsum("ij,ij->i", normal, made.site_normal[made.corner_site[:, 0]])
-    assert agrees.min() > 0.3 and agrees.mean() > 0.75
+    assert agrees[made.slot == BARK].min() > 0.3 and agrees.mean() > 0.65
 
 
 def test_trees_are_the_same_for_the_same_seed_and_differ_otherwise(workshop, row, same):

@@ -12,9 +12,9 @@ import numpy as np
 from scenegen.parts.vegetation.branches import GOLDEN_RAD, Branches, aside, sprout, unit
 from scenegen.parts.vegetation.cards import FACES, SPRAY_AREA, middles, moved_by, sprays
 from scenegen.parts.vegetation.growth import Grown, Plan
+from scenegen.parts.vegetation.habits import Broadleaf
 from scenegen.parts.vegetation.mesh import NOTHING, Mesh, merged
 from scenegen.parts.vegetation.outline import pull_inside, room, side_area
-from scenegen.parts.vegetation.species import Broadleaf
 from scenegen.parts.vegetation.tubes import tubes
 
 _TRUNK_FACES, _LIMB_FACES, _BRANCH_FACES, _TWIG_FACES = 84, 24, 9, 3
@@ -47,15 +47,19 @@ def grow(species: Broadleaf, plan: Plan, rng: np.random.Generator) -> Grown:
     branches = _branches(species, limbs, wood[1], rng)
     twigs = _twigs(species, branches, wood[2], rng)
     trunk, limbs, branches, twigs = _filling(species, (trunk, limbs, branches, twigs))
-    pieces = [tubes(limbs, 3 if small else 4, True), tubes(_coarse(branches, bare), 3, True)]
+    thin = [tubes(_coarse(branches, bare), 3, True)]
     if bare:
-        pieces.append(tubes(twigs, 3, True))
-    body, boughs = tubes(trunk, 5 if small else 7, False), merged(pieces)
-    left = round(faces) - (len(body) + len(boughs)) * (not bare)
+        thin.append(tubes(twigs, 3, True))
+    body, boughs, shoots = (
+        tubes(trunk, 5 if small else 7, False),
+        tubes(limbs, 3 if small else 4, True),
+        merged(thin),
+    )
+    left = round(faces) - (len(body) + len(boughs) + len(shoots)) * (not bare)
     leaves = NOTHING
     if plan.in_leaf > 0.0:
         leaves = _foliage(species, branches, twigs, max(left, 160) // FACES, plan.in_leaf, rng)
-    return Grown(body, boughs, leaves)
+    return Grown(body, boughs, shoots, leaves)
 
 
 def _richness(species: Broadleaf, faces: float, bare: bool) -> tuple[int, int, int]:

@@ -31,10 +31,13 @@ class Grown:
     ----------
     trunk : Mesh
     limbs : Mesh
-        All other wood.
+        Thick wood.
+    twigs : Mesh
+        Thin wood, which takes the temperature of the air sooner.
     leaves : Mesh
     """
 
     trunk: Mesh
     limbs: Mesh
+    twigs: Mesh
     leaves: Mesh

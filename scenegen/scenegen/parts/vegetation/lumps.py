@@ -34,7 +34,7 @@ UP, DOWN = np.array([[0.0, 0.0, 1.0]]), np.array([[0.0, 0.0, -1.0]])
 CROWN = np.concatenate([UP, ring(4, 38.0), ring(4, -4.0, 0.5), DOWN])
 """Top, four upper and four lower sides, and last the shaded inside and underside."""
 BARE = np.concatenate([UP, ring(4, 8.0), DOWN])
-"""Sides of branches: top, four sides, underside."""
+"""Sides of limbs: top, four sides, underside."""
 
 
 def supports(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from jaxtyping import Float64
 
-from scenegen.parts.vegetation.species import Outline
+from scenegen.parts.vegetation.habits import Outline
 
 _SAMPLES = 24
 _NARROWEST = 0.04

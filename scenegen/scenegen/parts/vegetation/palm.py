@@ -6,8 +6,8 @@ import numpy as np
 
 from scenegen.parts.vegetation.branches import GOLDEN_RAD, Branches, sprout, unit
 from scenegen.parts.vegetation.growth import Grown, Plan
-from scenegen.parts.vegetation.mesh import Mesh, merged
-from scenegen.parts.vegetation.species import Feather
+from scenegen.parts.vegetation.habits import Feather
+from scenegen.parts.vegetation.mesh import NOTHING, Mesh, merged
 from scenegen.parts.vegetation.tubes import tubes
 
 _FOOT = -0.03
@@ -24,8 +24,8 @@ def grow(species: Feather, plan: Plan, rng: np.random.Generator) -> Grown:
     fronds = _fronds(species, trunk.points[0, -1], max(13, round(species.fronds * min(q, 1.2))), rng)
     leaflets = max(7, round(species.leaflets * min(q, 1.3)))
     body = tubes(trunk, 6, False)
-    return Grown(body, tubes(Branches(fronds.points[:, [0, 3]], fronds.radius[:, [0, 3]]), 3, True),
-                 merged([_leaflets(fronds, leaflets, rng), _ribs(fronds)]))  # fmt: skip
+    stalks = tubes(Branches(fronds.points[:, [0, 3]], fronds.radius[:, [0, 3]]), 3, True)
+    return Grown(body, stalks, NOTHING, merged([_leaflets(fronds, leaflets, rng), _ribs(fronds)]))
 
 
 def _trunk(species: Feather, rng: np.random.Generator) -> Branches:

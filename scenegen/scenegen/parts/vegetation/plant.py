@@ -24,6 +24,7 @@ _FACES = (640, 1000, 1700, 3000)
 """Triangles of a tree of each size class."""
 _AVERAGE_CROWN = 0.25
 """Radius times length of an average crown, for a tree of unit height."""
+_SKINS = ("bark_trunk", "tree_crown", "twigs_bare")
 _COPIES_PER_FORM = (1, 15, 60)
 """From how many trees of one species and size there is a first, second and third form."""
 _WIDTH = (0.86, 1.0)
@@ -87,7 +88,7 @@ def plant(
     kind = _species(species)
     count = len(position)
     owner = shop.builder.new_objects(count) + np.arange(count)
-    skins = np.column_stack([_drawn("bark_trunk", count, shop, rng), _drawn("tree_crown", count, shop, rng)])
+    skins = np.column_stack([_drawn(name, count, shop, rng) for name in _SKINS])
     heading = rng.uniform(0.0, 2 * np.pi, count)
     wide = rng.uniform(*_WIDTH, count)
     scale = height_m[:, None] * np.column_stack([wide, wide, np.ones(count)])

@@ -52,7 +52,7 @@ def shrubs(
     skins = np.column_stack(
         [
             np.asarray(shop.palette.variants(name), np.int64)[rng.integers(0, len(shop.palette.variants(name)), count)]
-            for name in ("bark_trunk", "tree_crown")
+            for name in ("twigs_bare", "tree_crown")
         ]
     )  # fmt: skip
     form = rng.integers(0, _FORMS, count)

@@ -12,6 +12,7 @@ from scenegen.geometry.template import Template
 from scenegen.parts.vegetation import broadleaf, palm, whorled
 from scenegen.parts.vegetation.cards import FACES
 from scenegen.parts.vegetation.growth import Grown, Plan
+from scenegen.parts.vegetation.habits import Broadleaf, Feather
 from scenegen.parts.vegetation.lumps import (
     BARE,
     CROWN,
@@ -22,12 +23,12 @@ from scenegen.parts.vegetation.lumps import (
     thrice,
     wood_sites,
 )
-from scenegen.parts.vegetation.mesh import Mesh
-from scenegen.parts.vegetation.species import Broadleaf, Feather, Species
+from scenegen.parts.vegetation.mesh import Mesh, merged
+from scenegen.parts.vegetation.species import Species
 
-BARK, LEAVES = 0, 1
+BARK, LEAVES, TWIGS = 0, 1, 2
 """Surface slots of a tree."""
-_TRUNK_SIDES = ring(3, 0.0)
+_TRUNK_SIDES, SIDES = ring(3, 0.0), ring(4, 8.0)
 _TRUNK_SITE_HEIGHT, _TRUNK_RING = 0.12, 5
 _CROWN_BASE_QUANTILE = 0.08
 
@@ -54,6 +55,8 @@ def tree(species: Species, plan: Plan, rng: np.random.Generator) -> Template:
         _add(model, grown.trunk, BARK, _trunk_sites(model, grown.trunk))
         first = supports(model, grown.limbs.vertices, BARE)
         _add(model, grown.limbs, BARK, first + wood_sites(grown.limbs, BARE))
+        first = supports(model, grown.twigs.vertices, SIDES)
+        _add(model, grown.twigs, TWIGS, first + wood_sites(grown.twigs, SIDES))
     return model.finish()
 
 
@@ -68,7 +71,7 @@ def _grow(species: Species, plan: Plan, rng: np.random.Generator) -> Grown:
 
 def _sized(grown: Grown, radius: float) -> Grown:
     """Stretched so that it ends at height 1 and reaches just so far; its foot stays where it is."""
-    everything = np.concatenate([m.vertices for m in (grown.trunk, grown.limbs, grown.leaves)])
+    everything = np.concatenate([m.vertices for m in (grown.trunk, grown.limbs, grown.twigs, grown.leaves)])
     top = everything[:, 2].max()
     wide = radius / np.hypot(everything[:, 0], everything[:, 1]).max()
 
@@ -77,7 +80,7 @@ def _sized(grown: Grown, radius: float) -> Grown:
         vertices[:, 2] = np.where(vertices[:, 2] > 0.0, vertices[:, 2] / top, vertices[:, 2])
         return Mesh(vertices, mesh.faces)
 
-    return Grown(stretched(grown.trunk), stretched(grown.limbs), stretched(grown.leaves))
+    return Grown(*(stretched(m) for m in (grown.trunk, grown.limbs, grown.twigs, grown.leaves)))
 
 
 def _trunk_sites(model: Modeller, trunk: Mesh) -> Int64[np.ndarray, "faces"]:
@@ -96,7 +99,8 @@ def _wood_in_leaf(model: Modeller, grown: Grown) -> None:
     shaded = model.site(middle, DOWN[0], LUMP_STANDOFF_M)
     high = grown.trunk.corners()[..., 2].mean(axis=1) > crown_base
     _add(model, grown.trunk, BARK, np.where(high, shaded, sides))
-    _add(model, grown.limbs, BARK, np.full(len(grown.limbs), shaded))
+    boughs = merged([grown.limbs, grown.twigs])
+    _add(model, boughs, BARK, np.full(len(boughs), shaded))
 
 
 def _add(model: Modeller, mesh: Mesh, slot: int, site: Int64[np.ndarray, "faces"]) -> None:

@@ -7,9 +7,9 @@ from jaxtyping import Float64
 
 from scenegen.parts.vegetation.branches import Branches, sprout, unit
 from scenegen.parts.vegetation.growth import Grown, Plan
-from scenegen.parts.vegetation.mesh import Mesh
+from scenegen.parts.vegetation.habits import Whorled
+from scenegen.parts.vegetation.mesh import NOTHING, Mesh
 from scenegen.parts.vegetation.outline import half_width
-from scenegen.parts.vegetation.species import Whorled
 from scenegen.parts.vegetation.tubes import tubes
 
 _FULL_FACES = 2400
@@ -31,7 +31,7 @@ def grow(species: Whorled, plan: Plan, rng: np.random.Generator) -> Grown:
     inner = Branches(boughs.points[:, :2], boughs.radius[:, :2])
     body, limbs = tubes(trunk, 5, True), tubes(inner, 3, True)
     left = plan.faces - len(body) - len(limbs)
-    return Grown(body, limbs, _needles(species, boughs, whorls, left, rng))
+    return Grown(body, limbs, NOTHING, _needles(species, boughs, whorls, left, rng))
 
 
 def _boughs(species: Whorled, trunk: Branches, whorls: int, each: int, rng: np.random.Generator) -> Branches:
