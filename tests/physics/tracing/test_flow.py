@@ -155,7 +155,8 @@ def test_warped_temperatures_agree_because_the_texture_is_fixed_to_the_world(
     ground[:, :pixels] = False
     assert ground.sum() > 2_000
     warped = np.roll(there.temperature, pixels, axis=1)
-    np.testing.assert_allclose(here.temperature[ground], warped[ground], atol=5e-3)
+    # rounded positions (2e-5 m) in the finest octave, 6 cm of 1 K, leave up to 10 mK
+    np.testing.assert_allclose(here.temperature[ground], warped[ground], atol=1.2e-2)
     np.testing.assert_allclose(here.flow[ground], np.broadcast_to((-pixels, 0), (ground.sum(), 2)), atol=1e-3)
     assert 0.6 < here.temperature[ground].std() < 1.4  # amplitude of aged asphalt: 1 K
 
