@@ -20,6 +20,7 @@ from scenegen.movers.stroll import stroll
 _LANE_M, _ABREAST_M, _COURSE_M = 1.75, 0.55, 16.0
 _ASTERN_M = 7.0
 _CELL_M = 4.0
+_USUAL_PEOPLE = 90.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,9 +74,10 @@ def depart(
 
     traffic = road_rng.uniform(*shop.knobs.traffic_per_100_m)
     movers = list(drive([plan.road], traffic, shop, road_rng, speed_mps=(9.0, 15.0)))
+    crowd = shop.knobs.people[1] / _USUAL_PEOPLE
     for way in plan.walks:
-        movers += stroll([way], beach_rng.uniform(0.5, 2.5), shop, beach_rng)
-    movers += stroll([plan.pier], pier_rng.uniform(0.5, 2.0), shop, pier_rng, ground=deck)
+        movers += stroll([way], crowd * beach_rng.uniform(0.5, 2.5), shop, beach_rng)
+    movers += stroll([plan.pier], crowd * pier_rng.uniform(0.5, 2.0), shop, pier_rng, ground=deck)
     busy = boat_rng.uniform(*shop.knobs.sailing_per_km)
     for course in plan.courses:
         movers += sail([course], busy, shop, boat_rng, water=water, wave_height_m=sea.waves.significant_m)
