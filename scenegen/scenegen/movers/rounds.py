@@ -95,13 +95,11 @@ def standing(
 
 def _even(ring: np.ndarray) -> np.ndarray:
     """Points at even distances along a closed line."""
-    line = shapely.LinearRing(ring)
-    count = max(int(np.ceil(line.length / _SPACING_M)), 16)
-    return np.asarray(
-        shapely.get_coordinates(
-            shapely.line_interpolate_point(line, np.arange(count) * (line.length / count))
-        )
-    )
+    closed = np.concatenate([ring, ring[:1]])
+    mark = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
+    count = max(int(np.ceil(mark[-1] / _SPACING_M)), 16)
+    place = np.arange(count) * (mark[-1] / count)
+    return np.column_stack([np.interp(place, mark, closed[:, k]) for k in range(2)])
 
 
 def _rounded(xy: np.ndarray, length_m: float) -> np.ndarray:
