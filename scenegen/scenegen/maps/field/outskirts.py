@@ -16,10 +16,12 @@ from scenegen.geometry.template import Template, place
 from scenegen.maps.field.country import FAR_M, ROAD_HALF_M, Country, Cover
 from scenegen.maps.field.thicket import thicket
 from scenegen.maps.field.workshop import FieldWorkshop
+from scenegen.parts.vegetation.foliage import leaf_fraction
 
 _WALLS = ("stucco_render", "brick_red", "stucco_render", "wood_siding")
 _ROOFS = ("clay_roof_tile", "clay_roof_tile", "slate_roof", "metal_roof_painted_mid")
 _FINE_M = 750.0
+_DECIDUOUS = 0.7
 _BEYOND_M, _EDGE_M = 42.0, 230.0
 _CELLS_M = ((250.0, 600.0, 1200.0, 2200.0), (4.0, 16.0, 38.0, 60.0))
 """About half the size of the ground's triangles [m] at distances from the origin [m]."""
@@ -100,9 +102,12 @@ def _lines(country: Country, shop: FieldWorkshop, rng: np.random.Generator) -> n
 
 
 def _groves(spots: np.ndarray, shop: FieldWorkshop, rng: np.random.Generator) -> list[Part]:
-    """Masses of trees, finer ones nearby."""
-    leaves = np.array(shop.palette.variants("tree_crown"))
-    skin = leaves[rng.integers(len(leaves), size=len(spots))][:, None]
+    """Masses of trees, finer ones nearby; in winter most are bare twigs, which warm and cool as bark does."""
+    leaves, bark = (np.array(shop.palette.variants(name)) for name in ("tree_crown", "bark_trunk"))
+    skin = leaves[rng.integers(len(leaves), size=len(spots))]
+    wood = bark[rng.integers(len(bark), size=len(spots))]
+    bare = rng.uniform(size=len(spots)) < _DECIDUOUS * (1.0 - leaf_fraction(shop.season))
+    skin = np.where(bare, wood, skin)[:, None]
     position = np.column_stack([spots[:, :2], _on_mesh(spots[:, :2], shop)])
     scale, heading = spots[:, [2, 2, 3]], rng.uniform(0.0, 2 * np.pi, len(spots))
     owner = shop.builder.new_objects(len(spots)) + np.arange(len(spots))
