@@ -12,6 +12,7 @@ from scenegen.foundation.atomic import make_directories, write_atomic
 from scenegen.foundation.errors import InputError
 from scenegen_datasets.layers import check_layers
 from scenegen_datasets.loader import PairDataset
+from scenegen_datasets.pictures import words
 from scenegen_datasets.pictures.animation import animate
 from scenegen_datasets.pictures.sheet import contact_sheet
 from scenegen_datasets.pictures.shot import Shot
@@ -26,7 +27,6 @@ MAX_ROWS = 6
 MAX_FRAMES = 48
 
 _SHOWN = ("thermal", "depth", "flow", "semantic", "instance")
-_MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 
 
 def write_preview(root: Path) -> tuple[Path, Path]:
@@ -86,18 +86,15 @@ def _shot(sample: dict[str, Any], scale: CountScale) -> Shot:
 
 def _facts(clip: dict[str, Any]) -> str:
     """Hour, date, place and weather as a reader wants them."""
-    minutes = int(float(clip["hour"]) * 60.0) % 1440
-    latitude, cloud = float(clip["latitude_deg"]), float(clip["cloud_fraction"])
-    sky = "clear" if cloud < 0.15 else "overcast" if cloud > 0.9 else f"{round(8 * cloud)}/8 cloud"
     return "   ".join(
         (
-            f"{minutes // 60:02d}:{minutes % 60:02d} solar time",
-            f"{int(clip['day'])} {_MONTHS[int(clip['month']) - 1]}",
-            f"{abs(latitude):.0f}°{'N' if latitude >= 0 else 'S'}",
+            words.time_of_day(float(clip["hour"])),
+            words.date(int(clip["month"]), int(clip["day"])),
+            words.latitude(float(clip["latitude_deg"])),
             f"sun {float(clip['sun_elevation_deg']):+.0f}°",
-            sky,
-            f"wind {float(clip['wind_mps']):.1f} m/s",
-            f"mean air {float(clip['air_mean_K']) - 273.15:.0f} °C",
+            words.sky(float(clip["cloud_fraction"])),
+            words.wind(float(clip["wind_mps"])),
+            f"mean air {words.celsius(float(clip['air_mean_K']))}",
             f"flying {float(clip['speed_mps']):.0f} m/s",
         )
     )

@@ -12,7 +12,7 @@ from scenegen.classes import Semantic
 from scenegen.thermal_state import ThermalState
 from scenegen.world import World
 from scenegen_datasets.census import ClassCount, count_classes, count_objects
-from scenegen_datasets.pictures import colour
+from scenegen_datasets.pictures import colour, words
 from scenegen_datasets.pictures.canvas import FAINT, Canvas
 from scenegen_datasets.pictures.scales import Tone
 from scenegen_datasets.pictures.views import VIEW_PX, View, photograph
@@ -27,7 +27,6 @@ BAR_PX = 22
 LINE_PX = 20
 LEGEND_COLUMNS = 4
 
-_MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 _LIGHT = np.array([-0.35, -0.75, -0.56])
 _AMBIENT = 0.62
 
@@ -119,23 +118,20 @@ def _legend(canvas: Canvas, y: int, width: int, counts: Sequence[ClassCount]) ->
         fill = count.kind.colour if count.kind.id != Semantic.SKY else colour.SKY_COLOUR
         canvas.swatch(x, line - 11, 12, fill)
         end = canvas.text(x + 20, line, count.kind.name.replace("_", " "), 13)
-        words = f"{count.triangles:,} triangles"
+        said = f"{count.triangles:,} triangles"
         if count.kind.thing:
-            words = f"{count.objects:,} object{'s' if count.objects > 1 else ''}, {words}"
-        canvas.text(end + 10, line, words, 11, FAINT)
+            said = f"{count.objects:,} object{'s' if count.objects > 1 else ''}, {said}"
+        canvas.text(end + 10, line, said, 11, FAINT)
 
 
 def _weather(state: ThermalState) -> str:
-    minutes, season, weather = int(state.hour * 60.0) % 1440, state.season, state.weather
-    cloud = weather.cloud_fraction
-    sky = "clear" if cloud < 0.15 else "overcast" if cloud > 0.9 else f"{round(8 * cloud)}/8 cloud"
     return "   ".join(
         (
-            f"{minutes // 60:02d}:{minutes % 60:02d} solar time",
-            f"{season.day} {_MONTHS[season.month - 1]}",
-            f"{abs(season.latitude_deg):.0f}°{'N' if season.latitude_deg >= 0 else 'S'}",
-            sky,
-            f"wind {weather.wind_mps:.1f} m/s",
-            f"air {state.atmosphere.air_K - 273.15:.0f} °C",
+            words.time_of_day(state.hour),
+            words.date(state.season.month, state.season.day),
+            words.latitude(state.season.latitude_deg),
+            words.sky(state.weather.cloud_fraction),
+            words.wind(state.weather.wind_mps),
+            f"air {words.celsius(state.atmosphere.air_K)}",
         )
     )

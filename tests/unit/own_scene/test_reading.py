@@ -87,6 +87,18 @@ def test_the_generator_draws_materials_and_nothing_else(scene: Path) -> None:
     assert same.face_surface.tobytes() == one.face_surface.tobytes()
 
 
+def test_flights_stay_in_the_area_of_the_sidecar(scene: Path) -> None:
+    sidecar = scene.with_suffix(".yaml")
+    words = sidecar.read_text()
+    sidecar.write_text(words + "flight_area_m: [-10, -100, 12, 5]\nflight_ceiling_m: 30\n")
+    low, high = built(scene).flight_box_m
+    assert (low[0], low[1], high[0], high[1]) == (-10.0, -18.0, 12.0, 5.0)
+    assert high[2] - low[2] == pytest.approx(30.0)
+    sidecar.write_text(words + "flight_area_m: [100, 100, 200, 200]\n")
+    with pytest.raises(InputError, match="lies outside the scene"):
+        built(scene)
+
+
 def test_names_of_objects_groups_and_materials_of_an_obj_are_kept(tmp_path: Path) -> None:
     path = tmp_path / "named.obj"
     path.write_bytes(

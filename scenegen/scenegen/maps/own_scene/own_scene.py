@@ -109,7 +109,7 @@ def build_own_scene(name: str, scene: OwnScene, season: Season, rng: np.random.G
         sites=merged.sites,
         palette=palette,
         ground=ground,
-        flight_box_m=_flight_box(vertices, ground, described.sidecar),
+        flight_box_m=_flight_box(vertices, ground, described.sidecar, raw.shift_m),
         counts=_counts(raw),
     )
 
@@ -207,22 +207,27 @@ def _fineness() -> Iterator[tuple[float, float]]:
 
 
 def _flight_box(
-    vertices: Float64[np.ndarray, "vertices 3"], ground: HeightField, sidecar: Sidecar
+    vertices: Float64[np.ndarray, "vertices 3"],
+    ground: HeightField,
+    sidecar: Sidecar,
+    shift_m: tuple[float, float],
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     """The sides of the scene, a little inwards, or those of the sidecar inside them; from the lowest ground up."""
     low, high = vertices[:, :2].min(axis=0), vertices[:, :2].max(axis=0)
     margin = np.minimum(5.0, 0.05 * (high - low))
-    (west, south), (east, north) = (low + margin).tolist(), (high - margin).tolist()
+    low, high = low + margin, high - margin
     if sidecar.flight_area_m is not None:
-        asked = sidecar.flight_area_m
-        west, south, east, north = (
-            max(west, asked[0]),
-            max(south, asked[1]),
-            min(east, asked[2]),
-            min(north, asked[3]),
-        )
+        west, south, east, north = sidecar.flight_area_m
+        low = np.maximum(low, np.array([west, south]) - shift_m)
+        high = np.minimum(high, np.array([east, north]) - shift_m)
+        if (high - low).min() < 1.0:
+            raise InputError(f"flight_area_m {list(sidecar.flight_area_m)} lies outside the scene")
     floor = float(ground.height_m.min())
-    return (west, south, floor), (east, north, floor + sidecar.flight_ceiling_m)
+    return (float(low[0]), float(low[1]), floor), (
+        float(high[0]),
+        float(high[1]),
+        floor + sidecar.flight_ceiling_m,
+    )
 
 
 def _counts(raw: RawScene) -> tuple[tuple[str, int], ...]:

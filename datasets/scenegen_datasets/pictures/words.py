@@ -1,0 +1,38 @@
+"""Time, place and weather in the words that stand above pictures."""
+
+from __future__ import annotations
+
+_MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+
+
+def time_of_day(hour: float) -> str:
+    """Local mean solar time, such as ``05:12 solar time``."""
+    minutes = int(hour * 60.0) % 1440
+    return f"{minutes // 60:02d}:{minutes % 60:02d} solar time"
+
+
+def date(month: int, day: int) -> str:
+    """Such as ``15 Jul``."""
+    return f"{day} {_MONTHS[month - 1]}"
+
+
+def latitude(degrees: float) -> str:
+    """Such as ``48°N``."""
+    return f"{abs(degrees):.0f}°{'N' if degrees >= 0 else 'S'}"
+
+
+def sky(cloud_fraction: float) -> str:
+    """Clear, so many eighths, or overcast."""
+    if cloud_fraction < 0.15:
+        return "clear"
+    return "overcast" if cloud_fraction > 0.9 else f"{round(8 * cloud_fraction)}/8 cloud"
+
+
+def wind(speed_mps: float) -> str:
+    """Such as ``wind 3.1 m/s``."""
+    return f"wind {speed_mps:.1f} m/s"
+
+
+def celsius(kelvin: float) -> str:
+    """Such as ``12 °C``."""
+    return f"{kelvin - 273.15:.0f} °C"
