@@ -55,7 +55,7 @@ def test_a_hedge_follows_line_and_ground_without_gaps(workshop):
         return 0.08 * xy[:, 0] + 3.0
 
     line = np.array([[0.0, 0.0], [11.0, 0.0], [11.0, 8.0]])
-    parts = hedges([line, line + 40.0], 1.5, 0.8, workshop(relief), np.random.default_rng(0), lift_m=0.1)
+    parts = hedges([line, line[:2] + 40.0], 1.5, 0.8, workshop(relief), np.random.default_rng(0), lift_m=0.1)
     vertices = np.concatenate([p.vertices[p.faces[p.object == 1]].reshape(-1, 3) for p in parts])
     above = vertices[:, 2] - relief(vertices[:, :2]) - 0.1
     assert -0.12 < above.min() < 0.0 and above.max() == pytest.approx(1.5, abs=0.03)

@@ -25,7 +25,7 @@ _TURN_SHARE = 0.35
 
 
 def hedges(
-    line: Sequence[Float64[np.ndarray, "points 2"]],
+    line: Sequence[Float64[np.ndarray, "_ 2"]],
     height_m: float,
     width_m: float,
     shop: Workshop,
