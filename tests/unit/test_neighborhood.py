@@ -35,8 +35,8 @@ WALLS = [Semantic.WALL, Semantic.WINDOW, Semantic.DOOR]
 
 
 @cache
-def build(seed, season=Season(40.0, 7, 15)):
-    return build_neighborhood(SMALL, season, stream(seed, "neighborhood"))
+def build(seed):
+    return build_neighborhood(SMALL, Season(40.0, 7, 15), stream(seed, "neighborhood"))
 
 
 @cache
@@ -222,7 +222,9 @@ def test_two_seeds_are_two_places():
     built = []
     for seed in SEEDS[:2]:
         world = build(seed)
-        tree = shapely.STRtree(shapely.polygons(corners(world, world.face_semantic == Semantic.ROOF)[..., :2]))
+        tree = shapely.STRtree(
+            shapely.polygons(corners(world, world.face_semantic == Semantic.ROOF)[..., :2])
+        )
         built.append(np.isin(np.arange(len(xy)), tree.query(shapely.points(xy), predicate="within")[0]))
     assert min(b.mean() for b in built) > 0.05
     assert (built[0] & built[1]).sum() < 0.5 * (built[0] | built[1]).sum()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -100,7 +101,7 @@ def _free(
             cuts.append((lo, hi, other.eave_m))
     marks = sorted({start, end, *(c[0] for c in cuts), *(c[1] for c in cuts)})
     found = []
-    for lo, hi in zip(marks[:-1], marks[1:], strict=True):
+    for lo, hi in pairwise(marks):
         low = max((h for p, q, h in cuts if p <= lo + 1e-9 and hi <= q + 1e-9), default=0.0)
         if low < top - 0.3:
             found.append((lo, hi, low))

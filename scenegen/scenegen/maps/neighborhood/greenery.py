@@ -75,12 +75,13 @@ def obstacles(
     lines: list[Line],
 ) -> Obstacles:
     """Collect what trees, shrubs and people must not stand in."""
+    spans = kerbside.overhead.spans()
     paved = [plan.carriageway, *(g for p in parcels for g in p.paved())]
     return Obstacles(
         np.asarray(holes, dtype=object),
         np.array(paved, dtype=object),
         np.asarray(shapely.points(kerbside.feet())),
-        np.asarray(shapely.linestrings(kerbside.spans)) if len(kerbside.spans) else np.zeros(0, object),
+        np.asarray(shapely.linestrings(spans)) if len(spans) else np.zeros(0, object),
         np.array([shapely.LineString(line.points) for line in lines], dtype=object),
     )
 

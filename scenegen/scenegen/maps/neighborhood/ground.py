@@ -92,7 +92,8 @@ def _lattice(
         mask[near.query(shapely.points(points), predicate="dwithin", distance=reach_m)[0]] = True
         return mask
 
-    fine = hexagonal(*plan.outline.bounds, _FINE_M, rng)
+    x0, y0, x1, y1 = plan.outline.bounds
+    fine = hexagonal(x0, y0, x1, y1, _FINE_M, rng)
     fine = fine[shapely.contains_xy(plan.outline, fine)]
     coarse = graded_points(plan.outline.buffer(3.0), FAR_M, _COARSE_M, rng)
     return np.concatenate(

@@ -70,7 +70,7 @@ def divide(plan: StreetPlan, width_m: float, depth_m: float, rng: np.random.Gene
 def _block_left(ring: shapely.LinearRing, outer: bool) -> np.ndarray:
     """The points of a ring, closed, with the block on its left."""
     xy = shapely.get_coordinates(ring)
-    return xy if bool(shapely.is_ccw(ring)) != outer else xy[::-1]
+    return np.asarray(xy if bool(shapely.is_ccw(ring)) != outer else xy[::-1])
 
 
 def _frontage(ring: np.ndarray, width_m: float, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:

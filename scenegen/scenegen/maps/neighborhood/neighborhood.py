@@ -24,8 +24,9 @@ from scenegen.maps.neighborhood.kerbside import build_kerbside, plan_kerbside
 from scenegen.maps.neighborhood.knobs import NeighborhoodKnobs
 from scenegen.maps.neighborhood.lots import divide
 from scenegen.maps.neighborhood.outskirts import far_objects, lie_of
-from scenegen.maps.neighborhood.parcels import Parcel, Settler, homes_of
+from scenegen.maps.neighborhood.parcels import Parcel
 from scenegen.maps.neighborhood.people import people
+from scenegen.maps.neighborhood.settler import Settler, homes_of
 from scenegen.maps.neighborhood.streets import StreetPlan, draw_streets
 from scenegen.maps.neighborhood.traffic import build_traffic, find_spots
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
@@ -89,8 +90,8 @@ def build_neighborhood(knobs: NeighborhoodKnobs, season: Season, rng: np.random.
         ("trees", len(trees.xy)),
         ("fences", sum(line.style != "hedge" for line in borders)),
         ("hedges", sum(line.style == "hedge" for line in borders)),
-        ("utility poles", sum(len(p) for p in kerbside.poles)),
-        ("service drops", len(kerbside.drops)),
+        ("utility poles", sum(len(p) for p in kerbside.overhead.poles)),
+        ("service drops", len(kerbside.overhead.drops)),
         ("lamps", len(kerbside.lamps)),
         ("people", len(standing)),
     )

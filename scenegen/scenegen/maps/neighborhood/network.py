@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -98,7 +99,7 @@ def _edges(y: np.ndarray, reach: np.ndarray, links: list[np.ndarray]) -> list[np
         before = [-reach[k]] if x[0] + reach[k] > _SHORTEST_END_M else []
         after = [reach[k]] if reach[k] - x[-1] > _SHORTEST_END_M else []
         x = np.concatenate([before, x, after])
-        edges += [np.array([[a, y[k]], [b, y[k]]]) for a, b in zip(x[:-1], x[1:], strict=True)]
+        edges += [np.array([[a, y[k]], [b, y[k]]]) for a, b in pairwise(x)]
     for k, row in enumerate(links):
         edges += [np.array([[x, y[k]], [x, y[k + 1]]]) for x in row]
     return edges
@@ -133,7 +134,9 @@ def _cut(
             stubs.append(np.array([start, start + sign * (length - gap - 8.0) * step]))
     kept = [e for e, stay in zip(edges, keep, strict=True) if stay]
     nodes = np.concatenate(kept)
-    rooted = [s for s in stubs if np.linalg.norm(nodes - s[0], axis=1).min() < 0.01]  # its root may be gone by now
+    rooted = [
+        s for s in stubs if np.linalg.norm(nodes - s[0], axis=1).min() < 0.01
+    ]  # its root may be gone by now
     return kept, rooted
 
 

@@ -57,7 +57,7 @@ def far_regions(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Gen
 
 
 def lie_of(plane: Triangulation, plan: StreetPlan, relief: Relief) -> Relief:
-    """Height of the ground as its mesh has it: near the neighborhood that is the relief, farther out the mesh is coarse.
+    """Height of the ground as its mesh has it: near the neighborhood the relief, farther out a coarse mesh.
 
     Parameters
     ----------

@@ -38,7 +38,7 @@ def people(
     rng : numpy.random.Generator
     """
     wanted = int(rng.poisson(rng.uniform(*shop.knobs.people_per_100_lots) * len(parcels) / 100))
-    walkers = _on_sidewalks(plan, int(round(_OUTDOORS * wanted)), rng)
+    walkers = _on_sidewalks(plan, round(_OUTDOORS * wanted), rng)
     idlers = _at_home(parcels, wanted - len(walkers), rng)
     rows = np.concatenate([walkers, idlers])
     shapes = shapely.buffer(shapely.points(rows[:, :2]), _RADIUS_M, quad_segs=2)

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from jaxtyping import Float64
+
 from scenegen.maps.neighborhood.knobs import NeighborhoodKnobs
+from scenegen.maps.neighborhood.streets import KERB_M
 from scenegen.parts.workshop import Workshop
 
 
@@ -18,3 +22,7 @@ class NeighborhoodWorkshop(Workshop):
     """
 
     knobs: NeighborhoodKnobs
+
+    def on_verge(self, rows: Float64[np.ndarray, "rows columns"]) -> Float64[np.ndarray, "rows 3"]:
+        """Positions at the level of verges, sidewalks and gardens; the first two columns are the plan [m]."""
+        return np.column_stack([rows[:, :2], self.relief(rows[:, :2]) + KERB_M])
