@@ -11,10 +11,13 @@ import hostile_scenes as hostile
 from scenegen.classes import Semantic
 from scenegen.climate.season import Season
 from scenegen.foundation.errors import InputError
+from scenegen.maps.own_scene import parse
 from scenegen.maps.own_scene.identity import content_hash, is_scene_path, scene_name, sidecar_path
 from scenegen.maps.own_scene.knobs import OwnScene
 from scenegen.maps.own_scene.own_scene import build_own_scene
+from scenegen.maps.own_scene.raw import RawScene
 from scenegen.maps.own_scene.reading import read_scene
+from scenegen.maps.own_scene.repair import join, repair
 from scenegen.maps.own_scene.sidecar import Sidecar
 from scenegen.world import World
 
@@ -205,6 +208,30 @@ def test_mutants_of_every_format_are_read_or_refused_and_kill_nobody(tmp_path: P
     assert [name for name, (what, _) in outcome.items() if what == "crashed"] == []
     assert all("\n" not in words for _, words in outcome.values())
     assert {what for what, _ in outcome.values()} == {"read", "refused"}
+
+
+def test_what_is_read_of_mutants_can_be_built(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def read_here(path: Path, _: Sidecar) -> RawScene:
+        with np.errstate(all="ignore"):
+            soups, ignored = parse.parse(path.read_bytes(), path.suffix, path.stem)
+            return repair(join(soups), ignored, "z", 1.0)
+
+    monkeypatch.setattr("scenegen.maps.own_scene.own_scene.read_scene", read_here)
+    (tmp_path / "scene.yaml").write_text("default_material: granite\n")
+    worlds = 0
+    for ending in hostile.ENDINGS:
+        for number in range(1000, 1016):
+            path = tmp_path / f"{number}{ending}"
+            path.write_bytes(hostile.mutant(ending, number))
+            try:
+                read_here(path, Z_UP)
+            except Exception:  # refused, as the child would
+                continue
+            world = built(path)
+            np.testing.assert_allclose(np.linalg.norm(world.sites.normal, axis=1), 1.0, atol=1e-5)
+            assert np.isfinite(world.ground.height_m).all()
+            worlds += 1
+    assert worlds > 8
 
 
 def test_a_child_that_dies_is_one_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
