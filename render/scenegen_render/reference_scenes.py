@@ -179,6 +179,7 @@ def uniform_state(world: World, temperature_K: float, atmosphere: Atmosphere) ->
         atmosphere=atmosphere,
         temperature_K=np.full(len(world.sites.area), temperature_K, np.float32),
         texture_K=np.zeros(len(world.palette), np.float32),
+        moving_K=np.full(sum(len(m.body.site_position) for m in world.movers), temperature_K, np.float32),
     )
 
 
