@@ -7,7 +7,7 @@ says; its texture stays on it; what shows no mover does not change by a bit.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -23,13 +23,14 @@ from scenegen.movers.company import Company
 from scenegen.movers.drive import drive
 from scenegen.movers.stroll import stroll
 from scenegen.parts.workshop import Workshop
+from scenegen.radiometry.atmosphere import Atmosphere
 from scenegen.thermal_state import ThermalState
 from scenegen.world import World
 from scenegen_render import backend
 from scenegen_render.camera import Camera
 from scenegen_render.frame import Frame
 from scenegen_render.knobs import RenderKnobs
-from scenegen_render.reference_scenes import looking
+from scenegen_render.reference_scenes import looking, uniform_state
 from scenegen_render.scene import LoadedWorld, load
 from scenegen_render.trace import Tracer
 from scenegen_render.trace.casting import MAX_TRIANGLES, around, choose
@@ -311,3 +312,18 @@ def test_an_instant_is_the_same_however_it_was_reached(
             assert (
                 np.ascontiguousarray(layer).tobytes() == np.ascontiguousarray(getattr(b, name)).tobytes()
             ), name
+
+
+def test_in_a_world_of_one_temperature_movers_cannot_be_seen(
+    peopled: World, loaded: LoadedWorld, tracer: Tracer, blackbody: Callable[[float], float]
+) -> None:
+    """Emission and reflection of movers add up to the blackbody whatever their emissivity, mirrors included."""
+    T = 300.0
+    air = Atmosphere(air_K=T, vapour_pressure_hPa=12.0, uniform_sky_K=T)
+    light = np.full(len(peopled.sites.area), np.pi * blackbody(T), np.float32)
+    state = uniform_state(peopled, T, air)
+    lit = tracer.light(loaded, state, light, range(len(peopled.movers)))
+    for poses, times in shots():
+        frame = tracer.frame(lit, *poses, times)
+        assert on_movers(frame).any()
+        np.testing.assert_allclose(frame.radiance, blackbody(T), rtol=2e-4)
