@@ -106,9 +106,7 @@ def read_all(files: list[Path]) -> Iterator[tuple[Path, str, str]]:
             Task(str(k), "g", {"file": str(f), "up_axis": "z", "unit_m": 1.0, "out": str(out)})
             for k, f in enumerate(files)
         ]
-        with Pool(
-            "scenegen.maps.own_scene.parse:worker", {"limits": True}, 1, strikes=1, silence_s=120.0
-        ) as pool:
+        with Pool("scenegen.maps.own_scene.parse:worker", {}, 1, strikes=1, silence_s=120.0) as pool:
             for event in pool.run(tasks):
                 path = files[int(event.task.key)]
                 if isinstance(event, Done):

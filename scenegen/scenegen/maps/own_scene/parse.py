@@ -25,15 +25,8 @@ from scenegen.maps.own_scene.repair import Soup, join, repair
 
 
 def worker(setup: Mapping[str, Any]) -> Callable[[dict[str, Any], Emit], dict[str, Any]]:
-    """Factory for `scenegen.foundation.pool.Pool`; puts this process under its limits for good.
-
-    Parameters
-    ----------
-    setup : mapping
-        ``limits``: false only in tests that run in their own process.
-    """
-    if setup["limits"]:
-        _limit()
+    """Factory for `scenegen.foundation.pool.Pool`, without setup; puts this process under its limits for good."""
+    _limit()
     return read
 
 

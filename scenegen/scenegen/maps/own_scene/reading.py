@@ -60,9 +60,7 @@ def read_scene(path: Path, sidecar: Sidecar) -> RawScene:
 
 def _ask(path: Path, payload: dict[str, Any]) -> dict[str, Any]:
     """Give the file to a fresh child; one attempt."""
-    with Pool(
-        _CHILD, {"limits": True}, 1, environment=_ENVIRONMENT, silence_s=READING_WALL_S, strikes=1
-    ) as pool:
+    with Pool(_CHILD, {}, 1, environment=_ENVIRONMENT, silence_s=READING_WALL_S, strikes=1) as pool:
         for event in pool.run([Task(str(path), "scene", payload)]):
             if isinstance(event, Done):
                 return event.value
