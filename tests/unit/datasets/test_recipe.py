@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from scenegen.foundation.canonical import canonical
 from scenegen.foundation.errors import InputError
-from scenegen.foundation.strict_yaml import read_mapping
+from scenegen.foundation.strict_yaml import parse_mapping, read_mapping
 from scenegen_datasets.layers import DEFAULT_LAYERS
 from scenegen_datasets.lock import recipe_id
 from scenegen_datasets.recipe import Recipe, resolve_recipe, settle_pairs
@@ -149,3 +149,9 @@ def test_merge_is_key_by_key() -> None:
 def test_the_recipes_of_the_project_are_sound(path: Path) -> None:
     assert path.read_text(encoding="utf-8").startswith("#")
     resolve_recipe([Source(path.name, read_mapping(path))])
+
+
+def test_movers_off_freezes_the_world_and_is_another_recipe():
+    frozen = Recipe.model_validate(parse_mapping("movers: off", "recipe.yaml"))
+    assert Recipe().movers and not frozen.movers
+    assert canonical(frozen.canonical()) != canonical(Recipe().canonical())
