@@ -20,7 +20,7 @@ from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
 from scenegen.parts.fixtures.erect import erect
 
 _POLE_PITCH_M, _LAMP_PITCH_M = (31.0, 39.0), (30.0, 38.0)
-_FROM_DRIVE_M, _FROM_KERB_M, _END_M = 0.7, 0.3, 7.0
+_FROM_DRIVE_M, _FROM_KERB_M, _FROM_POST_M, _END_M = 0.7, 0.3, 1.5, 7.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,18 +68,29 @@ def plan_kerbside(
     drives = np.array([p.driveway for p in parcels if p.driveway is not None], dtype=object)
     tree = shapely.STRtree(np.append(drives, plan.carriageway.buffer(_FROM_KERB_M - _FROM_DRIVE_M)))
     share = rng.uniform(*shop.knobs.pole_share)
-    lamps, poles = [np.zeros((0, 3))], []
+    lamps: list[np.ndarray] = []
+    poles: list[np.ndarray] = []
     for line in plan.lines:
         side = 1.0 if rng.uniform() < 0.5 else -1.0
         if rng.uniform() < share:
             row = _row(line, rng.uniform(*_POLE_PITCH_M), side * _offset(plan), tree, rng)
+            row = _apart(row, np.concatenate([np.zeros((0, 3)), *poles]))
             if len(row) > 1:
                 poles.append(_facing_on(row))
         light = _row(line, rng.uniform(*_LAMP_PITCH_M), -side * _offset(plan), tree, rng)
         light[:, 2] += -0.5 * np.pi * side
         lamps.append(light)
-    lights = np.concatenate(lamps)
-    return Kerbside(lights, _signs(plan), letter_box_places(parcels, lights), hang(poles, homes, solid, shop))
+    pylons = np.concatenate([np.zeros((0, 3)), *poles])
+    lights = np.zeros((0, 3))
+    for row in lamps:
+        lights = np.concatenate([lights, _apart(row, np.concatenate([pylons, lights]))])
+    signs = _apart(_signs(plan), np.concatenate([pylons, lights]))
+    return Kerbside(
+        lights,
+        signs,
+        letter_box_places(parcels, np.concatenate([pylons, lights, signs])),
+        hang(poles, homes, solid, shop),
+    )
 
 
 def build_kerbside(
@@ -120,6 +131,14 @@ def _row(
                 rows.append([*xy[0], float(heading[0])])
                 break
     return np.array(rows).reshape(-1, 3)
+
+
+def _apart(rows: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """The posts that keep their distance from those of other streets, as at junctions."""
+    if not len(rows) or not len(others):
+        return rows
+    gap = np.linalg.norm(rows[:, None, :2] - others[None, :, :2], axis=2).min(axis=1)
+    return np.asarray(rows[gap > _FROM_POST_M])
 
 
 def _facing_on(row: np.ndarray) -> np.ndarray:

@@ -15,8 +15,8 @@ from scenegen.maps.neighborhood.parcels import Parcel
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
 
 
-def letter_box_places(parcels: Sequence[Parcel], lamps: np.ndarray) -> np.ndarray:
-    """Position and heading of one box beside each path, facing the street; clear of driveways and lamps."""
+def letter_box_places(parcels: Sequence[Parcel], posts: np.ndarray) -> np.ndarray:
+    """Position and heading of one box beside each path, facing the street; clear of driveways and posts."""
     rows = []
     for parcel in parcels:
         door = parcel.bodies[0].entrance_m if parcel.bodies else None
@@ -33,9 +33,9 @@ def letter_box_places(parcels: Sequence[Parcel], lamps: np.ndarray) -> np.ndarra
     areas = shapely.STRtree(np.array([p.lot.area for p in parcels], dtype=object))
     inside[areas.query(points, predicate="within")[0]] = True
     inside[blocked] = False
-    if len(lamps):
+    if len(posts):
         inside[
-            shapely.STRtree(shapely.points(lamps[:, :2])).query(points, predicate="dwithin", distance=0.8)[0]
+            shapely.STRtree(shapely.points(posts[:, :2])).query(points, predicate="dwithin", distance=0.8)[0]
         ] = False
     return table[inside]
 
