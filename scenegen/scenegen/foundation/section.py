@@ -42,3 +42,18 @@ def _ordered(value: tuple[float, float]) -> tuple[float, float]:
 
 Span = Annotated[tuple[Number, Number], BeforeValidator(_span), AfterValidator(_ordered)]
 """A closed range to draw from, ``[low, high]``; a single number means that very value."""
+
+
+def within(low: float, high: float) -> AfterValidator:
+    """Bounds for a `Span`: ``Annotated[Span, within(0.0, 1.0)]``."""
+
+    def check(value: tuple[float, float]) -> tuple[float, float]:
+        if not low <= value[0] <= value[1] <= high:
+            raise ValueError(f"[{value[0]:g}, {value[1]:g}] lies outside {low:g} to {high:g}")
+        return value
+
+    return AfterValidator(check)
+
+
+Share = Annotated[Span, within(0.0, 1.0)]
+"""A range of shares between 0 and 1."""

@@ -9,10 +9,10 @@ from scenegen.classes import Semantic
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import first_come, rectangles
 from scenegen.geometry.template import place
-from scenegen.geometry.trees import grove
 from scenegen.maps.coastline.boulders import boulder
 from scenegen.maps.coastline.huts import hut
 from scenegen.maps.coastline.workshop import CoastWorkshop
+from scenegen.parts.vegetation.grove import grove
 
 _NEAREST_M, _REACH_M = 30.0, 4200.0
 _GROVES, _FARMS = 420, 150
