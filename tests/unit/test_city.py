@@ -82,7 +82,7 @@ def test_size(world):
     counts = dict(world.counts)
     assert counts["buildings"] >= 200
     assert counts["trees"] >= 300
-    assert counts["cars"] >= 200
+    assert counts["vehicles that stand"] >= 200
     assert counts["parks"] >= 1
     low, high = (np.array(corner) for corner in world.flight_box_m)
     assert (high[:2] - low[:2] > 400.0).all()
@@ -233,7 +233,7 @@ def test_knobs_are_honoured():
         flight_ceiling_m=80,
     )
     world = build_world("city", knobs, SEASON, stream(0, "city"))
-    assert dict(world.counts)["cars"] < 0.4 * dict(build(0).counts)["cars"]
+    assert dict(world.counts)["vehicles that stand"] < 0.4 * dict(build(0).counts)["vehicles that stand"]
     assert world.flight_box_m[1][0] < 250.0
     assert world.flight_box_m[1][2] == 80.0
     assert np.ptp(world.ground.height_m) == 0.0

@@ -70,6 +70,24 @@ class CityKnobs(Section):
     park_trees_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 25.0))] = (5.0, 10.0)
     """Trees in parks."""
 
+    viaduct_chance: Annotated[Number, Field(ge=0.0, le=1.0)] = 1.0
+    """Chance that an elevated railway runs over the longest arterial."""
+
+    viaduct_clearance_m: Annotated[Span, AfterValidator(_within(5.2, 14.0))] = (5.6, 8.0)
+    """Room under the viaduct's girder [m]."""
+
+    viaduct_span_m: Annotated[Span, AfterValidator(_within(14.0, 45.0))] = (20.0, 30.0)
+    """Distance between the viaduct's piers [m]."""
+
+    wired_street_share: Share = (0.3, 0.9)
+    """Share of arterials and collectors with overhead wires of trams and trolleybuses."""
+
+    bus_stop_share: Share = (0.1, 0.35)
+    """Share of the longer stretches of collectors that have a bus stop, on either side."""
+
+    people_standing: Annotated[Span, AfterValidator(_within(0.0, 400.0))] = (40.0, 120.0)
+    """People who stand at crossings and in parks; a few more wait at bus stops."""
+
     parked_cars_per_100_m: Annotated[Span, AfterValidator(_within(0.0, 17.0))] = (4.0, 8.0)
     """Parked cars along 100 m of kerb."""
 

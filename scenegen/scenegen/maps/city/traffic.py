@@ -14,6 +14,7 @@ from scenegen.geometry.placement import along, clear_of, first_come, rectangles
 from scenegen.geometry.relief import slopes
 from scenegen.maps.city.districts import Layout
 from scenegen.maps.city.knobs import CityKnobs
+from scenegen.maps.city.stops import Stops
 from scenegen.maps.city.streets import Rank, StreetPlan
 from scenegen.maps.city.workshop import CityWorkshop
 from scenegen.parts.vehicles.fleet import Fleet
@@ -29,7 +30,14 @@ _PARKED = {Rank.ARTERIAL: None, Rank.COLLECTOR: 4.6, Rank.SIDE: 3.6}
 """Lateral place of parked vehicles, right of the centre line [m]; those that drive need the lane beside them."""
 
 # Shares of car, van, bus, truck (in the order of `KINDS`).
-_SHARES = {"lot": (0.95, 0.05, 0.0, 0.0), "kerb": (0.9, 0.1, 0.0, 0.0)}
+_SHARES = {
+    "lot": (0.95, 0.05, 0.0, 0.0),
+    "kerb": (0.88, 0.12, 0.0, 0.0),
+    "collector": (0.85, 0.11, 0.0, 0.04),
+}
+_WIDTHS_M = np.array([size_m(name)[1] for name in KINDS])
+_SLIM_M = 0.3
+"""Vehicles wider than cars by more than this stand further from the kerb."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,9 +70,11 @@ class Traffic:
         return plans
 
 
-def plan_traffic(plan: StreetPlan, layout: Layout, knobs: CityKnobs, rng: np.random.Generator) -> Traffic:
+def plan_traffic(
+    plan: StreetPlan, layout: Layout, stops: Stops, knobs: CityKnobs, rng: np.random.Generator
+) -> Traffic:
     """Choose where vehicles stand: the ground is meshed around them."""
-    spots, lift, kind = _spots(plan, layout, knobs, rng)
+    spots, lift, kind = _spots(plan, layout, stops, knobs, rng)
     fleets = [Fleet.draw(name, int((kind == k).sum()), rng) for k, name in enumerate(KINDS)]
     return Traffic(spots, lift, kind, tuple(fleets))
 
@@ -77,15 +87,19 @@ def build_traffic(traffic: Traffic, shop: CityWorkshop, rng: np.random.Generator
     parts = []
     for k, fleet in enumerate(traffic.fleets):
         mine = traffic.kind == k
-        parts += park(fleet.kind, position[mine], spots[mine, 2], slope[mine], shop, rng, fleet=fleet)
+        at_stop = fleet.kind == "bus"  # with its engine running
+        turned = position[mine], spots[mine, 2], slope[mine]
+        parts += park(fleet.kind, *turned, shop, rng, driven=at_stop, fleet=fleet)
     return parts
 
 
 def _spots(
-    plan: StreetPlan, layout: Layout, knobs: CityKnobs, rng: np.random.Generator
+    plan: StreetPlan, layout: Layout, stops: Stops, knobs: CityKnobs, rng: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Places (x, y, heading) that do not overlap, the height of the ground above the relief, and kinds."""
     street, kind = _in_streets(plan, knobs, rng)
+    street = np.concatenate([stops.buses, street])
+    kind = np.concatenate([np.full(len(stops.buses), KINDS.index("bus")), kind])
     lots = [lot for block in layout.blocks for lot in block.car_parks]
     bays = np.concatenate([np.zeros((0, 3)), *(_in_car_park(lot, rng) for lot in lots)])
     spots = np.concatenate([street, bays])
@@ -116,10 +130,14 @@ def _in_streets(
             marks = np.arange(link.start_m + 8.0, link.end_m - 8.0, _PITCH_M)
             marks = marks[rng.uniform(size=len(marks)) < rate * _PITCH_M / 100]
             marks = marks + rng.uniform(-0.3, 0.3, len(marks))
-            xy, heading = along(street.line, marks, np.full(len(marks), side * right))
+            shares = _SHARES["collector" if street.rank is Rank.COLLECTOR else "kerb"]
+            what = rng.choice(len(KINDS), len(marks), p=shares)
+            wide = _WIDTHS_M[what] - _WIDTHS_M[0]
+            aside = right - np.where(wide > _SLIM_M, wide / 2, 0.0)
+            xy, heading = along(street.line, marks, side * aside)
             heading = heading + rng.normal(0.0, 0.015, len(marks)) + (0.0 if side > 0 else np.pi)
             rows.append(np.column_stack([xy, heading]))
-            kinds.append(rng.choice(len(KINDS), len(marks), p=_SHARES["kerb"]))
+            kinds.append(what)
     return np.concatenate(rows), np.concatenate(kinds)
 
 
@@ -131,7 +149,7 @@ def _in_car_park(lot: Lot, rng: np.random.Generator) -> np.ndarray:
     x0, y0, x1, y1 = room.bounds
     rows = np.arange(y0 + 2.7, y1, 8.2)
     x, y = (g.ravel() for g in np.meshgrid(np.arange(x0 + 1.4, x1, 2.7), rows))
-    taken = rng.uniform(size=len(x)) < rng.uniform(0.25, 0.8)
+    taken = rng.uniform(size=len(x)) < rng.uniform(0.12, 0.5)
     x, y = x[taken], y[taken]
     heading = np.where(rng.uniform(size=len(x)) < 0.5, 0.5, 1.5) * np.pi
     shapes = rectangles(np.column_stack([x, y]), np.full(len(x), 4.8), np.full(len(x), 2.1), heading)
