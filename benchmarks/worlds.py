@@ -113,6 +113,11 @@ def sound(name: str, seeds: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
         loaded = load(world)
         found = audit(loaded)
         problems.update((f.problem, f.semantic) for f in found.findings)
+        for f in found.findings[:3]:
+            print(
+                f"    seed {seed}: {f.semantic} {f.object} {f.problem} at "
+                + "{:.1f} {:.1f} {:.1f}".format(*f.position_m)
+            )
         problems.update(
             {("not finite", "vertex"): found.non_finite, ("without area", "face"): found.degenerate}
         )
