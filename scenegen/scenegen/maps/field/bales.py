@@ -4,17 +4,20 @@ from __future__ import annotations
 
 import numpy as np
 import shapely
+from jaxtyping import Float64
 
 from scenegen.classes import Semantic
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import clear_of, first_come
+from scenegen.geometry.relief import Relief
 from scenegen.geometry.template import Template, place
 from scenegen.maps.field.country import Country, Cover
 from scenegen.maps.field.workshop import FieldWorkshop
 
 RADIUS_M, LENGTH_M = 0.7, 1.25
 _SIDES = 14
+_HALF_CELL_M = 3.0
 _PER_HECTARE = (6.0, 18.0)
 
 
@@ -42,12 +45,20 @@ def build_bales(
     count = len(table)
     if not count:
         return [], discs[keep]
-    position = np.column_stack([table[:, :2], shop.relief(table[:, :2])])
+    position = np.column_stack([table[:, :2], _lowest_lie(shop.relief, table[:, :2])])
     skin = shop.palette.variants("grass_dry")
     skins = np.array(skin)[rng.integers(len(skin), size=count)][:, None]
     owner = shop.builder.new_objects(count) + np.arange(count)
     size = rng.uniform(0.9, 1.1, (count, 1)) * np.ones(3)
     return [place(bale(), position, table[:, 2], size, skins, owner)], discs[keep]
+
+
+def _lowest_lie(relief: Relief, xy: Float64[np.ndarray, "points 2"]) -> Float64[np.ndarray, "points"]:
+    """Height of the relief, or of the mesh where its cells cut off a crest: the mean of a ring of half a cell."""
+    angle = 2 * np.pi * np.arange(6) / 6
+    ring = _HALF_CELL_M * np.column_stack([np.cos(angle), np.sin(angle)])
+    around = relief((xy[:, None, :] + ring).reshape(-1, 2)).reshape(-1, len(ring))
+    return np.asarray(np.minimum(relief(xy), around.mean(axis=1)))
 
 
 def bale() -> Template:
