@@ -9,6 +9,7 @@ import pytest
 import shapely
 
 from scenegen.classes import Semantic
+from scenegen.climate.climatology import normals
 from scenegen.climate.season import Season
 from scenegen.foundation.errors import InputError
 from scenegen.foundation.rng import stream
@@ -20,6 +21,7 @@ from scenegen.materials.material import Build
 SEASON = Season(40.0, 7, 15)
 
 SEEDS = (0, 1, 2)
+ROOMS = (Build.WALL_INSULATED, Build.WINDOW, Build.ROOF_INSULATED)
 GROUND = [
     Semantic.ROAD, Semantic.SIDEWALK, Semantic.ROAD_MARKING, Semantic.SOIL, Semantic.GRASS, Semantic.WATER,
 ]  # fmt: skip
@@ -99,8 +101,11 @@ def test_classes_and_palette(world):
     for surface in world.palette:
         low, high = surface.material.emissivity_range
         assert low <= surface.emissivity <= high
-        if surface.material.build in (Build.WALL_INSULATED, Build.WINDOW, Build.ROOF_INSULATED):
-            assert 292.0 <= surface.interior_K <= 297.0
+    rooms_K = np.array([s.interior_K for s in world.palette if s.material.build in ROOMS])
+    heated = (rooms_K >= 292.0) & (rooms_K <= 297.0)
+    assert heated.sum() > 10
+    assert rooms_K[~heated] == pytest.approx(normals(SEASON).expected_C + 275.15)
+    assert (~heated).sum() > 1
 
 
 def test_every_building_is_one_instance_with_walls_roof_and_windows(world):
@@ -201,6 +206,40 @@ def test_ground_faces_look_up_and_walls_keep_their_sites_side(world):
     glass = world.face_semantic == Semantic.WINDOW
     mine = world.sites.normal[world.corner_site[glass][:, 0]]
     assert np.einsum("ij,ij->i", normals[glass], mine).min() > 0.99
+
+
+def test_a_railway_crosses_the_city_above_its_streets(world):
+    bridge = corners(world, np.isin(world.face_semantic, [Semantic.BRIDGE, Semantic.BARRIER]))
+    middle = bridge.mean(axis=1)
+    inside = np.abs(middle[:, :2]).max(axis=1) < 330.0
+    above = middle[inside, 2] - world.ground.at(middle[inside, :2])
+    assert above.max() > 8.0
+    deck = bridge[inside][bridge[inside, :, 2].min(axis=1) - world.ground.at(middle[inside, :2]) > 4.9]
+    plan = shapely.union_all(shapely.buffer(shapely.polygons(deck[..., :2]), 0.05))
+    assert plan.area > 8.0 * 500.0
+    posts = bridge[inside][above < 4.0]
+    assert len(posts) > 14 * 10
+    blocks = corners(world, world.face_semantic == Semantic.SIDEWALK)[..., :2]
+    on_sidewalk = shapely.STRtree(shapely.polygons(blocks)).query(
+        shapely.points(posts.mean(axis=1)[:, :2]), predicate="within"
+    )
+    assert on_sidewalk.shape[1] == 0
+
+
+def test_wires_hang_above_what_drives_below_them(world):
+    wires = corners(world, world.face_semantic == Semantic.WIRE).reshape(-1, 3)
+    wires = wires[np.abs(wires[:, :2]).max(axis=1) < 330.0]
+    assert len(wires) > 1000
+    assert (wires[:, 2] - world.ground.at(wires[:, :2])).min() > 4.5
+
+
+def test_some_rooms_are_unheated_and_some_air_handlers_run(world):
+    skins = world.palette
+    glass = np.unique(world.face_surface[world.face_semantic == Semantic.WINDOW])
+    rooms_K = {skins[k].interior_K for k in glass if skins[k].material.name == "window_glass"}
+    assert max(rooms_K) - min(rooms_K) > 1.0
+    gear = np.unique(world.face_surface[world.face_semantic == Semantic.ROOF_EQUIPMENT])
+    assert max(skins[k].interior_K for k in gear if np.isfinite(skins[k].interior_K)) > 303.0
 
 
 def test_the_same_seed_gives_the_same_bytes():

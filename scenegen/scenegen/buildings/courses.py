@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 
 from scenegen.buildings.building import Building, Volume
-from scenegen.buildings.styles import Kind, Roof
+from scenegen.buildings.styles import Kind, Roof, Style
 from scenegen.geometry.facade import BLANK, DOOR, WINDOW, Walls
 
 _SHORT_WALL_M = 2.2
@@ -72,7 +72,8 @@ class WallTable:
     Attributes
     ----------
     walls : Walls
-    filling : int64 (cells,)
+    filling, glass : int64 (cells,)
+        What fills each cell, and its pane: rooms nobody heats have panes of their own.
     blank : float64 (blank, 4, 3)
         Corners of blank walls.
     blank_surface, blank_object : int64 (blank,)
@@ -80,6 +81,7 @@ class WallTable:
 
     walls: Walls
     filling: np.ndarray
+    glass: np.ndarray
     blank: np.ndarray
     blank_surface: np.ndarray
     blank_object: np.ndarray
@@ -105,7 +107,8 @@ def wall_table(buildings: Sequence[Building], rng: np.random.Generator) -> WallT
     keep = ~blank
     walls = _walls(courses, buildings, start[keep], end[keep], index[keep])
     filling = _filling(walls, courses, buildings, index[keep], rng)
-    return WallTable(walls, filling, quads, surface[blank], objects[owner[blank]])
+    glass = _panes(walls, [buildings[c.building].style for c in courses], index[keep], rng)
+    return WallTable(walls, filling, glass, quads, surface[blank], objects[owner[blank]])
 
 
 def _party(
@@ -179,3 +182,14 @@ def _filling(
     gates = shed[wall] & has_door[wall] & (column % 3 == entrance[wall] % 3)
     filling[(storey == 0) & gates] = DOOR
     return filling
+
+
+def _panes(walls: Walls, styles: Sequence[Style], index: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Palette index of the pane in each cell; two columns on two storeys belong together."""
+    wall, column, storey = walls.cells()
+    share = np.array([s.cold_share for s in styles])[index]
+    cold = np.array([s.glass if s.cold_glass is None else s.cold_glass for s in styles])[index]
+    key = (wall * (storey.max(initial=0) + 1) + storey // 2) * (column.max(initial=0) + 1) + column // 2
+    rooms, room = np.unique(key, return_inverse=True)
+    unheated = rng.uniform(size=len(rooms))[room.ravel()] < share[wall]
+    return np.asarray(np.where(unheated, cold[wall], walls.glass[wall]))

@@ -10,7 +10,7 @@ import shapely
 
 from scenegen.buildings.building import Building
 from scenegen.buildings.roofs import flat_outline
-from scenegen.buildings.styles import Kind, Roof
+from scenegen.buildings.styles import Kind, Roof, Style
 from scenegen.classes import Semantic
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import Part
@@ -93,7 +93,7 @@ def _skylight() -> Template:
 
 
 _MODELS = (
-    _Model(_air_handler(), ((1.6, 4.5), (1.2, 2.4), (1.2, 2.2)), 0.34, ("metal", "cap")),
+    _Model(_air_handler(), ((1.6, 4.5), (1.2, 2.4), (1.2, 2.2)), 0.34, ("unit", "unit")),
     _Model(_vent(), ((0.5, 1.0), (0.5, 1.0), (0.7, 1.5)), 0.34, ("metal",)),
     _Model(_house(), ((3.0, 5.5), (2.6, 4.0), (2.2, 3.2)), 0.12, ("wall", "roof")),
     _Model(_skylight(), ((1.6, 4.0), (1.0, 1.6), (0.5, 0.9)), 0.20, ("metal", "glass")),
@@ -129,7 +129,7 @@ def draw_roof_gear(buildings: Sequence[Building], rng: np.random.Generator) -> R
     for k, kind in enumerate(_MODELS):
         mine = np.flatnonzero(keep & (model == k))
         owners = [roofs[int(roof[i])][0] for i in mine]
-        skins = np.array([[getattr(b.style, s) for s in kind.slots] for b in owners], np.int64)
+        skins = np.array([[_skin(b.style, s) for s in kind.slots] for b in owners], np.int64)
         position = np.column_stack([centre[mine], height[mine] - 0.02])
         objects = np.array([b.object for b in owners], np.int64)
         parts.append(
@@ -145,6 +145,12 @@ def draw_roof_gear(buildings: Sequence[Building], rng: np.random.Generator) -> R
     chimneys, stacks = _chimneys(buildings, rng)
     occupied = shapely.buffer(plans[keep], -0.5 * _EDGE_M, join_style="mitre")
     return RoofGear((*parts, *chimneys), np.concatenate([occupied, stacks]))
+
+
+def _skin(style: Style, slot: str) -> int:
+    """Palette index of a slot."""
+    value = getattr(style, slot)
+    return style.metal if value is None else int(value)
 
 
 def _heading(building: Building) -> float:

@@ -45,7 +45,13 @@ def build_shells(buildings: Sequence[Building], roof_plans: np.ndarray, rng: np.
     balconies = plan_balconies(table.walls, table.filling, buildings, rng)
     return concatenate(
         [
-            facades(table.walls, table.filling, balconies.walls(len(table.walls.start)), _PANES_PER_SITE),
+            facades(
+                table.walls,
+                table.filling,
+                balconies.walls(len(table.walls.start)),
+                _PANES_PER_SITE,
+                table.glass,
+            ),
             build_balconies(table.walls, balconies),
             blank,
             _trim(volumes),

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
 
-from scenegen.materials.palette import PaletteBuilder
+from scenegen.materials.palette import MAX_VARIANTS, PaletteBuilder
 
 
 class Kind(StrEnum):
@@ -58,6 +58,12 @@ class Style:
     balconies : bool
     roof_slope : float
         Rise over run of pitched roofs.
+    cold_glass : int or None
+        Panes before rooms that nobody heats.
+    cold_share : float
+        Share of such rooms.
+    unit : int or None
+        Casings of air handlers, warm where they run; `metal` if None.
     """
 
     wall: int
@@ -82,6 +88,9 @@ class Style:
     shops: bool
     balconies: bool
     roof_slope: float
+    cold_glass: int | None = None
+    cold_share: float = 0.0
+    unit: int | None = None
 
 
 _WALLS = {
@@ -101,6 +110,58 @@ _WALLS = {
 _FLAT_ROOFS = ("bitumen_felt_roof", "epdm_black_roof", "white_membrane_roof", "bitumen_felt_roof")
 _PITCHED_ROOFS = ("clay_roof_tile", "slate_roof", "asphalt_shingle", "clay_roof_tile")
 _SLOPES = {Roof.GABLE: (0.55, 1.0), Roof.HIP: (0.45, 0.8), Roof.MANSARD: (2.0, 2.8), Roof.FLAT: (0.0, 0.0)}
+
+
+@dataclass(frozen=True)
+class Heating:
+    """What is heated in a world.
+
+    Attributes
+    ----------
+    cold_share : float
+        Share of rooms nobody heats, in buildings that are heated.
+    cold_K : float
+        Air temperature there, and in unheated buildings [K].
+    cold_sheds, running : float
+        Shares of unheated warehouses, and of buildings whose air handlers run.
+    """
+
+    cold_share: float
+    cold_K: float
+    cold_sheds: float
+    running: float
+
+    def prepare(self, palette: PaletteBuilder) -> None:
+        """Leave room for unheated variants of what may be unheated; before anything else is drawn."""
+        for name in ("window_glass", *sorted({*_WALLS[Kind.SHED], *_FLAT_ROOFS})):
+            palette.variants(name, MAX_VARIANTS - 1)
+
+    def apply(self, style: Style, kind: Kind, palette: PaletteBuilder, rng: np.random.Generator) -> Style:
+        """A style with its heating."""
+        cold, runs, warm = rng.uniform(size=3)
+        glass = palette.special("window_glass", "unheated", interior_K=self.cold_K)
+        unit_K = UNIT_K[0] + warm * (UNIT_K[1] - UNIT_K[0])
+        names = [s.material.name for s in palette.surfaces()]
+
+        def unheated(skin: int) -> int:
+            return palette.special(names[skin], "unheated", interior_K=self.cold_K)
+
+        unit = (
+            palette.special("steel_painted", "air handler", interior_K=unit_K)
+            if runs < self.running
+            else None
+        )
+        style = replace(style, cold_glass=glass, cold_share=self.cold_share, unit=unit)
+        if kind is not Kind.SHED or cold >= self.cold_sheds:
+            return style
+        roof = unheated(style.roof) if style.roof_form is Roof.FLAT else style.roof
+        return replace(
+            style, wall=unheated(style.wall), base=unheated(style.wall), glass=glass, roof=roof, unit=None
+        )
+
+
+UNIT_K = (304.0, 318.0)
+"""Air inside the casing of an air handler that runs: exhaust air and the heat of its fans and compressors."""
 
 
 def draw_style(kind: Kind, form: Roof, palette: PaletteBuilder, rng: np.random.Generator) -> Style:

@@ -17,7 +17,7 @@ import shapely
 from jaxtyping import Bool, Float64, Int64
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
+from scipy.spatial import Delaunay, cKDTree
 
 GRID_M = 0.001
 """Plan coordinates are rounded to this grid when lines are noded [m]."""
@@ -193,18 +193,26 @@ def _delaunay(points: np.ndarray) -> np.ndarray:
     GEOS answers in coordinates, which are those put in, to the bit: sorting finds their indices. It takes half the
     time of Qhull, and its predicates are exact.
     """
-    rings = shapely.get_coordinates(shapely.delaunay_triangles(shapely.linestrings(points)))
-    corners = rings.reshape(-1, 4, 2)[:, :3]
-    key = np.ascontiguousarray(points, np.float64).view(np.complex128).ravel()
-    order = np.argsort(key, kind="stable")
-    found = np.searchsorted(key[order], np.ascontiguousarray(corners).view(np.complex128).ravel())
-    triangles = order[found].reshape(-1, 3)
-    a, b, c = (corners[:, k] for k in range(3))
+    try:
+        triangles = _by_geos(points)
+    except shapely.GEOSException:  # it walks from triangle to triangle and, once in some hundred worlds, loses its way
+        triangles = Delaunay(points).simplices.astype(np.int64)
+    a, b, c = (points[triangles[:, k]] for k in range(3))
     doubled = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
     triangles[doubled < 0] = triangles[doubled < 0][:, [0, 2, 1]]
     lowest = np.argmin(triangles, axis=1)[:, None]
     triangles = np.take_along_axis(triangles, (lowest + np.arange(3)) % 3, axis=1)
     return np.asarray(triangles[np.argsort(triangles[:, 0] * len(points) + triangles[:, 1], kind="stable")])
+
+
+def _by_geos(points: np.ndarray) -> np.ndarray:
+    """Corners of the Delaunay triangles that GEOS finds."""
+    rings = shapely.get_coordinates(shapely.delaunay_triangles(shapely.linestrings(points)))
+    corners = rings.reshape(-1, 4, 2)[:, :3]
+    key = np.ascontiguousarray(points, np.float64).view(np.complex128).ravel()
+    order = np.argsort(key, kind="stable")
+    found = np.searchsorted(key[order], np.ascontiguousarray(corners).view(np.complex128).ravel())
+    return np.asarray(order[found].reshape(-1, 3))
 
 
 def _label(

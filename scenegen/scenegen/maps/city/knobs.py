@@ -28,7 +28,7 @@ Share = Annotated[Span, AfterValidator(_within(0.0, 1.0))]
 class CityKnobs(Section):
     """Distributions of the city family; every world draws its own values inside them."""
 
-    extent_m: Annotated[Span, AfterValidator(_within(400.0, 860.0))] = (710.0, 750.0)
+    extent_m: Annotated[Span, AfterValidator(_within(400.0, 860.0))] = (690.0, 730.0)
     """Square root of the detailed area [m], 400 to 860: beyond, a world has too many thermal sites."""
 
     block_area_m2: Annotated[Span, AfterValidator(_within(3000.0, 40000.0))] = (7000.0, 13000.0)
@@ -48,6 +48,18 @@ class CityKnobs(Section):
 
     tower_storeys: Annotated[Span, AfterValidator(_within(6.0, 30.0))] = (10.0, 22.0)
     """Storeys of towers, podium included."""
+
+    setback_share: Share = (0.15, 0.5)
+    """Share of flat-roofed buildings of four storeys or more whose upper storeys step back."""
+
+    unheated_share: Share = (0.04, 0.15)
+    """Share of rooms that nobody heats: stairs, stores, empty flats."""
+
+    unheated_warehouse_share: Share = (0.3, 0.8)
+    """Share of sheds and warehouses without heating."""
+
+    running_units_share: Share = (0.3, 0.8)
+    """Share of buildings whose rooftop air handlers run."""
 
     modern_share: Share = (0.2, 0.6)
     """Share of the middle built after 1960: office blocks and towers instead of perimeter blocks."""
