@@ -37,7 +37,8 @@ TOUCH_M = 0.15
 _FOUNDATION_M = 4.0
 _DEEP_M = 60.0
 _SAMPLES = 28
-_WALKS = 4
+_WALKS = 8
+"""Surfaces of its own that a ray may leave behind: sprays of a hedge lie close."""
 _FOOT_M = 0.6
 _MIN_AREA_M2 = 1e-7
 _SHARED = 0.1

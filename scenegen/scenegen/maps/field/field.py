@@ -66,7 +66,8 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
     builder.add(build_shells(houses, gear.plans, walls), *gear.parts)
     equipment = build_equipment(grounds, country, half, shop, put_up)
     cars, car_plans = build_traffic(grounds, country, shop, cars_rng)
-    taken = np.array([*shapely.points(equipment.feet), *car_plans, *footprints], dtype=object)
+    water = [pond.outline() for pond in ponds]
+    taken = np.array([*shapely.points(equipment.feet), *car_plans, *footprints, *water], dtype=object)
     people, people_count = build_crowd(grounds, equipment.seats, taken, shop, sit)
     bales, bale_plans = build_bales(
         country, _occupied(taken, grounds.outline, country.corridor), half, shop, hay
