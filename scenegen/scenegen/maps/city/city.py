@@ -33,6 +33,8 @@ from scenegen.materials.palette import PaletteBuilder
 from scenegen.world import World
 
 _MARGIN_M = 12.0
+_BENCH_M = 1.1
+"""Reach of a bench from its middle."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +132,10 @@ def _build(plans: _Plans, shop: CityWorkshop, rng: np.random.Generator) -> tuple
     add(*build_traffic(plans.traffic, shop, cars), *build_furniture(plans.furniture, shop, posts))
     add(*build_overhead(plans.overhead, shop))
     at_kerb = np.concatenate([plans.furniture.posts(), plans.overhead.places()])
-    taken = np.concatenate([shapely.points(at_kerb), plans.traffic.outlines()])
+    benches = shapely.buffer(shapely.points(plans.furniture.rows["bench"][:, :2]), _BENCH_M)
+    taken = np.concatenate(
+        [shapely.points(at_kerb), benches, plans.stops.outlines(), plans.traffic.outlines()]
+    )
     people, people_at = build_people(streets, parks, plans.stops, taken, shop, crowd)
     trees, tree_count = build_greenery(
         layout, parks, np.concatenate([at_kerb, people_at, plans.stops.places()]), shop, green

@@ -14,6 +14,8 @@ from scenegen.maps.city.workshop import CityWorkshop
 _KERB_M = 0.12
 _PATH_HALF_M = 1.3
 _BANK_M = 0.35
+_BENCH_M = 2.3
+"""Distance of trunks from the middle of a bench: beyond its ends and the bin beside it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,10 +40,11 @@ class ParkPlan:
     benches: np.ndarray
 
     def free(self) -> shapely.Geometry:
-        """Lawn away from paths, pond and beds: where trees may stand."""
+        """Lawn away from paths, pond, beds and benches: where trees may stand."""
         taken = [p.buffer(0.9) for p in self.paths] + [b.buffer(0.4) for b in self.beds]
         if self.pond is not None:
             taken.append(self.pond.buffer(1.5))
+        taken += [shapely.Point(x, y).buffer(_BENCH_M) for x, y, _ in self.benches]
         return self.lawn.buffer(-1.5).difference(shapely.union_all(taken))
 
 

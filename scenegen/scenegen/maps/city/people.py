@@ -17,10 +17,10 @@ from scenegen.parts.people.stand import stand
 _KERB_M = 0.12
 _AT_KERB_M = (0.45, 0.95)
 """How far from the kerb people wait to cross: out of the way of those who walk past."""
-_ROOM_M = 0.35
+_ROOM_M = 0.42
 """Radius that one person takes."""
 _POST_GAP_M, _EDGE_M = 0.35, 4.0
-_GROUP_M = 0.55
+_GROUP_M = 0.95
 _WAITING_M = (-2.6, -3.2, 3.3)
 """Places beside a shelter, along it."""
 
@@ -126,7 +126,7 @@ def _in_parks(
             x0, y0, x1, y1 = area_of.bounds
             cloud = rng.uniform((x0, y0), (x1, y1), (40 * wanted, 2))
             cloud = cloud[shapely.contains_xy(area_of, cloud)][: (wanted + 1) // 2]
-            mate = cloud + _GROUP_M * 1.5 * _unit(rng.uniform(0.0, 2 * np.pi, len(cloud)))
+            mate = cloud + _GROUP_M * _unit(rng.uniform(0.0, 2 * np.pi, len(cloud)))
             both = np.concatenate([cloud, mate])
             heading = np.arctan2(*(np.concatenate([mate, cloud]) - both).T[::-1])
             inside = shapely.contains_xy(area_of, both)
