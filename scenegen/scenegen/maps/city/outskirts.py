@@ -15,9 +15,9 @@ from scenegen.geometry.part import Part
 from scenegen.geometry.placement import clear_of, first_come, rectangles
 from scenegen.geometry.standing import mesh_heights
 from scenegen.geometry.template import place
-from scenegen.geometry.trees import grove
 from scenegen.maps.city.streets import StreetPlan
 from scenegen.maps.city.workshop import CityWorkshop
+from scenegen.parts.vegetation.grove import grove
 
 FAR_M = 2600.0
 _ROAD_HALF_M = 5.0

@@ -16,8 +16,8 @@ from scenegen.parts.vegetation.grove import grove
 
 _NEAREST_M, _REACH_M = 30.0, 4200.0
 _GROVES, _FARMS = 420, 150
-_BURIED = 0.15
-"""Share of a wood's vertices that are below the ground."""
+_STEEPEST = 0.3
+"""Slope up to which a farm is built [m/m]."""
 
 
 def build_horizon(rock: str, ground: Part, shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:
@@ -34,8 +34,8 @@ def build_horizon(rock: str, ground: Part, shop: CoastWorkshop, rng: np.random.G
     """
     land_rng, islet_rng = rng.spawn(2)
     xy, built, size, heading = _spots(shop, land_rng)
-    height, found = _surface(ground, xy, shop.coast.half_m)
-    farm, wood = built & found, ~built & found
+    height, slope = _surface(ground, xy, shop.coast.half_m)
+    farm, wood = built & (slope < _STEEPEST), ~built & np.isfinite(slope)
     foot = np.column_stack([xy, height])
     return [
         _farms(foot[farm], size[farm], heading[farm], shop, land_rng),
@@ -45,7 +45,7 @@ def build_horizon(rock: str, ground: Part, shop: CoastWorkshop, rng: np.random.G
 
 
 def _surface(ground: Part, xy: np.ndarray, half_m: float) -> tuple[np.ndarray, np.ndarray]:
-    """Height [m] of the ground's triangles beyond the detailed square at plan points, and where there is one."""
+    """Height [m] and slope of the ground's triangles beyond the detailed square; endlessly steep where there is none."""
     corners = ground.vertices[ground.faces]
     corners = corners[np.abs(corners[..., :2]).max(axis=(1, 2)) > half_m]
     point, face = shapely.STRtree(shapely.polygons(corners[..., :2])).query(
@@ -54,9 +54,10 @@ def _surface(ground: Part, xy: np.ndarray, half_m: float) -> tuple[np.ndarray, n
     a, b, c = (corners[face, k] for k in range(3))
     normal = np.cross(b - a, c - a)
     aside = ((xy[point] - a[:, :2]) * normal[:, :2]).sum(axis=1)
-    height, found = np.zeros(len(xy)), np.zeros(len(xy), bool)
-    height[point], found[point] = a[:, 2] - aside / normal[:, 2], True
-    return height, found
+    height, slope = np.zeros(len(xy)), np.full(len(xy), np.inf)
+    height[point] = a[:, 2] - aside / normal[:, 2]
+    slope[point] = np.hypot(normal[:, 0], normal[:, 1]) / np.abs(normal[:, 2])
+    return height, slope
 
 
 def _spots(
@@ -98,10 +99,8 @@ def _groves(foot: np.ndarray, size: np.ndarray, shop: CoastWorkshop, rng: np.ran
     skins = leaves[rng.integers(len(leaves), size=len(foot))][:, None]
     owner = shop.builder.new_objects(len(foot)) + np.arange(len(foot))
     template = grove(rng)
-    rooted = float(np.quantile(template.vertices[:, 2], _BURIED))
     scale = np.column_stack([size, size, rng.uniform(9.0, 15.0, len(foot))])
-    position = foot - np.array([0.0, 0.0, rooted]) * scale
-    return place(template, position, rng.uniform(0.0, 2 * np.pi, len(foot)), scale, skins, owner)
+    return place(template, foot, rng.uniform(0.0, 2 * np.pi, len(foot)), scale, skins, owner)
 
 
 def _islets(rock: str, shop: CoastWorkshop, rng: np.random.Generator) -> list[Part]:

@@ -14,6 +14,8 @@ from scenegen.parts.vegetation.mesh import Mesh, merged
 
 _SIDES = 5
 _SPRAYS = 5
+_FOOT = -0.14
+"""How deep it stands in the ground, in heights: far ground is coarse and sloped."""
 _SITES = np.concatenate([UP, ring(3, 22.0)])
 
 
@@ -44,10 +46,10 @@ def grove(rng: np.random.Generator, crowns: int = 6) -> Template:
 
 
 def _dome(place: np.ndarray, wide: float, top: float, rng: np.random.Generator) -> Mesh:
-    """A pointed dome that widens downwards and ends a little below the ground."""
+    """A pointed dome that widens downwards and ends well below the ground."""
     angle = 2 * np.pi * (np.arange(_SIDES) + rng.uniform()) / _SIDES
     rings = []
-    for height, share in ((-0.02, 0.9), (0.45 * top, 1.0), (0.82 * top, 0.62)):
+    for height, share in ((_FOOT, 0.9), (0.45 * top, 1.0), (0.82 * top, 0.62)):
         reach = wide * share * rng.uniform(0.82, 1.12, _SIDES)
         z = height + 0.05 * top * rng.normal(size=_SIDES) * (height > 0.0)
         rings.append(np.column_stack([reach * np.cos(angle), reach * np.sin(angle), z]))
