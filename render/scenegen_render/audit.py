@@ -34,7 +34,7 @@ STANDING = (
 
 TOUCH_M = 0.15
 """Things nearer than this touch."""
-_FOUNDATION_M = 4.0
+_FOUNDATION_M = 8.0
 _DEEP_M = 60.0
 _SAMPLES = 28
 _WALKS = 8

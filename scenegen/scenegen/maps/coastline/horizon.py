@@ -45,7 +45,7 @@ def build_horizon(rock: str, ground: Part, shop: CoastWorkshop, rng: np.random.G
 
 
 def _surface(ground: Part, xy: np.ndarray, half_m: float) -> tuple[np.ndarray, np.ndarray]:
-    """Height [m] and slope of the ground's triangles beyond the detailed square; endlessly steep where there is none."""
+    """Height [m] and slope of the ground beyond the detailed square; endlessly steep where there is none."""
     corners = ground.vertices[ground.faces]
     corners = corners[np.abs(corners[..., :2]).max(axis=(1, 2)) > half_m]
     point, face = shapely.STRtree(shapely.polygons(corners[..., :2])).query(
