@@ -25,9 +25,10 @@ from scenegen.maps.neighborhood.neighborhood import build_neighborhood
 from scenegen.maps.neighborhood.streets import draw_streets
 from scenegen.maps.neighborhood.warp import Warp
 from scenegen.materials.palette import PaletteBuilder
+from scenegen.movers.company import Company
 
 SEEDS = (0, 1, 2)
-SMALL = NeighborhoodKnobs(extent_m=(220.0, 235.0), pool_share=0.3)
+SMALL = NeighborhoodKnobs(extent_m=(220.0, 235.0), pool_share=0.3, moving_cars_per_km=9.0)
 GROUND = [
     Semantic.ROAD, Semantic.SIDEWALK, Semantic.ROAD_MARKING, Semantic.SOIL, Semantic.GRASS, Semantic.WATER,
 ]  # fmt: skip
@@ -209,6 +210,47 @@ def test_cars_stand_on_the_ground_and_touch_nothing(world):
     assert height.max() < 0.40
 
 
+def plans(world, times):
+    """Rectangles (times, movers) that movers cover, and their heights above the ground."""
+    company = Company.of(world.movers)
+    low, high = company.box[:, 0], company.box[:, 1]
+    corner = np.stack(
+        [np.where([i, j], high[:, :2], low[:, :2]) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    )
+    poses = company.poses_over(times)
+    xy = np.einsum("tmij,kmj->tmki", poses[..., :2, :2], corner) + poses[..., None, :2, 3]
+    return xy, poses[..., 2, 3]
+
+
+def test_movers_keep_to_their_ways_and_to_themselves(world):
+    """Cars on the carriageway, people off it, and none in another or in anything that stands."""
+    drives = np.array([m.kind != "person" for m in world.movers])
+    assert drives.sum() >= 1
+    assert (~drives).sum() >= 2
+    road = np.isin(world.face_semantic, [Semantic.ROAD, Semantic.ROAD_MARKING])
+    pieces = shapely.polygons(corners(world, road)[..., :2])
+    owner = world.face_object[road]
+    wide = np.bincount(owner, shapely.area(pieces)) > 600.0  # no driveway
+    pieces = pieces[wide[owner] | (world.face_semantic[road] == Semantic.ROAD_MARKING)]
+    street = shapely.union_all(pieces, grid_size=0.001).buffer(0.15)
+    tall = ~np.isin(world.face_semantic, GROUND)
+    points = corners(world, tall).reshape(-1, 3)
+    height = points[:, 2] - world.ground.at(points[:, :2])
+    plant = np.repeat(world.face_semantic[tall] == Semantic.TREE, 3)
+    low, high = np.where(plant, -0.2, 0.35), np.where(plant, 0.35, 1.4)  # twigs may hang over a sidewalk
+    things = shapely.STRtree(shapely.points(points[(height > low) & (height < high), :2]))
+    for xy, z in zip(*plans(world, np.linspace(0.0, 1100.0, 23)), strict=True):
+        rectangles = shapely.polygons(xy)
+        a, b = shapely.STRtree(rectangles).query(rectangles, predicate="intersects")
+        assert (a == b).all()
+        assert street.contains(rectangles[drives]).all()
+        assert not street.buffer(-0.5).intersects(rectangles[~drives]).any()
+        above = z - world.ground.at(xy.mean(axis=1))
+        assert (above > -0.2).all()
+        assert (above < 0.3).all()
+        assert things.query(rectangles, predicate="contains").shape[1] == 0
+
+
 def test_the_same_seed_gives_the_same_bytes():
     first, second = build(0), build.__wrapped__(0)
     for a, b in zip(arrays(first), arrays(second), strict=True):
@@ -242,12 +284,15 @@ def test_a_whole_world_keeps_its_budgets():
 def test_knobs_are_honoured():
     knobs = NeighborhoodKnobs(
         extent_m=220.0, relief_m=0.0, driveway_cars=0.0, parked_cars_per_100_m=0.0, moving_cars_per_km=0.0,
-        pool_share=0.0, people_per_100_lots=0.0, pole_share=0.0, hedge_share=0.0, fence_share=0.0,
-        flight_ceiling_m=60,
+        pool_share=0.0, people_per_100_lots=0.0, walkers_per_100_m=0.0, pole_share=0.0, hedge_share=0.0,
+        fence_share=0.0, flight_ceiling_m=60,
     )  # fmt: skip
     world = build_neighborhood(knobs, Season(40.0, 7, 15), stream(0, "neighborhood"))
     counts = dict(world.counts)
-    assert [counts[k] for k in ("cars", "pools", "people", "utility poles", "fences", "hedges")] == [0] * 6
+    assert [
+        counts[k] for k in ("cars", "pools", "people who stand", "utility poles", "fences", "hedges")
+    ] == [0] * 6
+    assert world.movers == ()
     assert np.ptp(world.ground.height_m) < 1e-6
     assert world.flight_box_m[1][2] == 60.0
     with pytest.raises(ValueError, match="outside"):

@@ -44,6 +44,8 @@ class Obstacles:
         Overhead wires.
     lines : array of shapely.LineString
         Fences and hedges.
+    walks : array of shapely lines
+        Ways of people.
     """
 
     solid: np.ndarray
@@ -51,6 +53,7 @@ class Obstacles:
     posts: np.ndarray
     spans: np.ndarray
     lines: np.ndarray
+    walks: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +76,7 @@ def obstacles(
     holes: Sequence[shapely.Polygon],
     kerbside: Kerbside,
     lines: list[Line],
+    walks: np.ndarray,
 ) -> Obstacles:
     """Collect what trees, shrubs and people must not stand in."""
     spans = kerbside.overhead.spans()
@@ -83,6 +87,7 @@ def obstacles(
         np.asarray(shapely.points(kerbside.feet())),
         np.asarray(shapely.linestrings(spans)) if len(spans) else np.zeros(0, object),
         np.array([shapely.LineString(line.points) for line in lines], dtype=object),
+        walks,
     )
 
 
@@ -120,6 +125,8 @@ def _standing(trees: Trees, blocked: Obstacles) -> Trees:
     trees = trees.only(keep)
     crown = shapely.buffer(shapely.points(trees.xy), trees.radius_m, quad_segs=4)
     keep = clear_of(crown, blocked.solid, 0.6) & clear_of(crown, blocked.posts, 0.25)
+    bushy = (trees.height_m < _LOW_M) | np.isin(trees.species, [name for name, _ in _CONIFERS])
+    keep &= ~bushy | clear_of(crown, blocked.walks, 0.2)
     keep &= (trees.height_m < _LOW_M) | clear_of(crown, blocked.spans, _WIRE_GAP_M)
     trees = trees.only(keep)
     closer = shapely.buffer(shapely.points(trees.xy), 0.85 * trees.radius_m, quad_segs=4)
@@ -230,6 +237,7 @@ def _shrub_spots(
     shapes = shapely.buffer(shapely.points(table[:, :2]), half, quad_segs=3)
     keep = clear_of(shapes, blocked.solid, 0.12) & clear_of(shapes, blocked.paved, 0.05)
     keep &= clear_of(shapes, blocked.lines, 0.3) & clear_of(shapes, blocked.posts, 0.2)
+    keep &= clear_of(shapes, blocked.walks, 0.4)
     keep &= clear_of(shapes, np.asarray(shapely.points(trees.xy)), 0.3)
     index = np.flatnonzero(keep)
     keep[index] = first_come(shapes[index])

@@ -138,12 +138,17 @@ def _streets(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Genera
     pavement, asphalt = shop.palette.pick("concrete_pavement", rng), shop.palette.pick("asphalt_aged", rng)
     grass = shop.palette.pick("grass_dry" if rng.uniform() < 0.5 else "grass_watered", rng)
     walk, verge, road = shop.builder.new_objects(), shop.builder.new_objects(), shop.builder.new_objects()
-    regions = [Region(plan.front, pavement, int(Semantic.SIDEWALK), walk, KERB_M)]
+    public = shapely.intersection(plan.front, plan.outline)  # not across the roads that leave
+    regions = [
+        Region(p, pavement, int(Semantic.SIDEWALK), walk, KERB_M)
+        for p in shapely.get_parts(public)
+        if p.geom_type == "Polygon"
+    ]
     if plan.verge_m > 0:
         strip = plan.carriageway.buffer(plan.verge_m, quad_segs=4).simplify(0.05)
         regions += [
             Region(p, grass, int(Semantic.GRASS), verge, KERB_M)
-            for p in shapely.get_parts(strip.intersection(plan.front))
+            for p in shapely.get_parts(strip.intersection(public))
             if p.geom_type == "Polygon"
         ]
     regions.append(Region(plan.carriageway, asphalt, int(Semantic.ROAD), road))

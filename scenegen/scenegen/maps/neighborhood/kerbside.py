@@ -11,7 +11,7 @@ from jaxtyping import Float64
 
 from scenegen.buildings.detached.body import Home
 from scenegen.geometry.part import Part
-from scenegen.geometry.placement import along
+from scenegen.geometry.placement import along, clear_of
 from scenegen.maps.neighborhood.letterboxes import build_letter_boxes, letter_box_places
 from scenegen.maps.neighborhood.overhead import Overhead, build_overhead, hang
 from scenegen.maps.neighborhood.parcels import Parcel
@@ -21,6 +21,7 @@ from scenegen.parts.fixtures.erect import erect
 
 _POLE_PITCH_M, _LAMP_PITCH_M = (31.0, 39.0), (30.0, 38.0)
 _FROM_DRIVE_M, _FROM_KERB_M, _FROM_POST_M, _END_M = 0.7, 0.3, 1.5, 7.0
+_FROM_WALK_M, _FROM_SIGN_M = 0.7, 0.36
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +52,7 @@ def plan_kerbside(
     parcels: Sequence[Parcel],
     homes: Sequence[Home],
     solid: np.ndarray,
+    walks: np.ndarray,
     shop: NeighborhoodWorkshop,
     rng: np.random.Generator,
 ) -> Kerbside:
@@ -62,11 +64,15 @@ def plan_kerbside(
         What was drawn so far.
     solid : array of shapely.Polygon
         Plan of each home.
+    walks : array of shapely lines
+        Ways of people, which stay free.
     shop : NeighborhoodWorkshop
     rng : numpy.random.Generator
     """
     drives = np.array([p.driveway for p in parcels if p.driveway is not None], dtype=object)
-    tree = shapely.STRtree(np.append(drives, plan.carriageway.buffer(_FROM_KERB_M - _FROM_DRIVE_M)))
+    ways = shapely.buffer(walks, max(_FROM_WALK_M - _FROM_DRIVE_M, 0.01))
+    kerb = plan.carriageway.buffer(_FROM_KERB_M - _FROM_DRIVE_M)
+    tree = shapely.STRtree(np.concatenate([drives, ways, [kerb]]))
     share = rng.uniform(*shop.knobs.pole_share)
     lamps: list[np.ndarray] = []
     poles: list[np.ndarray] = []
@@ -84,7 +90,9 @@ def plan_kerbside(
     lights = np.zeros((0, 3))
     for row in lamps:
         lights = np.concatenate([lights, _apart(row, np.concatenate([pylons, lights]))])
-    signs = _apart(_signs(plan), np.concatenate([pylons, lights]))
+    signs = _signs(plan)
+    signs = signs[clear_of(np.asarray(shapely.points(signs[:, :2])), walks, _FROM_SIGN_M)]
+    signs = _apart(signs, np.concatenate([pylons, lights]))
     return Kerbside(
         lights,
         signs,

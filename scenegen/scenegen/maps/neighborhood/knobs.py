@@ -28,7 +28,7 @@ Share = Annotated[Span, AfterValidator(_within(0.0, 1.0))]
 class NeighborhoodKnobs(Section):
     """Distributions of the neighborhood family; every world draws its own values inside them."""
 
-    extent_m: Annotated[Span, AfterValidator(_within(220.0, 700.0))] = (540.0, 590.0)
+    extent_m: Annotated[Span, AfterValidator(_within(220.0, 700.0))] = (505.0, 545.0)
     """Side of the square the street network is drawn in [m], 220 to 700; gardens reach a little beyond."""
 
     lot_width_m: Annotated[Span, AfterValidator(_within(14.0, 45.0))] = (20.0, 27.0)
@@ -88,11 +88,14 @@ class NeighborhoodKnobs(Section):
     parked_cars_per_100_m: Annotated[Span, AfterValidator(_within(0.0, 14.0))] = (0.8, 2.5)
     """Cars parked along 100 m of kerb."""
 
-    moving_cars_per_km: Annotated[Span, AfterValidator(_within(0.0, 30.0))] = (1.0, 4.0)
-    """Cars driving on a kilometre of street."""
+    moving_cars_per_km: Annotated[Span, AfterValidator(_within(0.0, 30.0))] = (1.5, 5.0)
+    """Cars and vans that drive, on a kilometre of street."""
 
-    people_per_100_lots: Annotated[Span, AfterValidator(_within(0.0, 200.0))] = (8.0, 35.0)
-    """People in the streets and gardens."""
+    walkers_per_100_m: Annotated[Span, AfterValidator(_within(0.0, 10.0))] = (0.1, 0.5)
+    """People who walk or run, on 100 m of sidewalk."""
+
+    people_per_100_lots: Annotated[Span, AfterValidator(_within(0.0, 200.0))] = (4.0, 18.0)
+    """People who stand about in gardens."""
 
     pole_share: Share = (0.5, 1.0)
     """Share of streets with utility poles and overhead wires; the others have buried cables."""

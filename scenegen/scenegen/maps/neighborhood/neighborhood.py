@@ -23,6 +23,7 @@ from scenegen.maps.neighborhood.ground import build_ground
 from scenegen.maps.neighborhood.kerbside import build_kerbside, plan_kerbside
 from scenegen.maps.neighborhood.knobs import NeighborhoodKnobs
 from scenegen.maps.neighborhood.lots import divide
+from scenegen.maps.neighborhood.motion import plan_rounds, set_out
 from scenegen.maps.neighborhood.outskirts import far_objects, lie_of
 from scenegen.maps.neighborhood.parcels import Parcel
 from scenegen.maps.neighborhood.people import people
@@ -31,6 +32,7 @@ from scenegen.maps.neighborhood.streets import StreetPlan, draw_streets
 from scenegen.maps.neighborhood.traffic import build_traffic, find_spots
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
 from scenegen.materials.palette import PaletteBuilder
+from scenegen.movers.mover import Mover
 from scenegen.world import World
 
 _MARGIN_M = 10.0
@@ -49,7 +51,7 @@ def build_neighborhood(knobs: NeighborhoodKnobs, season: Season, rng: np.random.
         The only source of randomness; each subsystem gets a child of its own, so that none disturbs another.
     """
     own, streets, hills, skins, lots_rng, settle_rng, roofs_rng, ground, walls, cars_rng, far = rng.spawn(11)
-    posts_rng, border_rng, tree_rng, people_rng = rng.spawn(4)
+    posts_rng, border_rng, tree_rng, people_rng, ways_rng, motion_rng = rng.spawn(6)
     extent, depth = own.uniform(*knobs.extent_m), own.uniform(*knobs.lot_depth_m)
     width = own.uniform(*knobs.lot_width_m)
     plan = draw_streets(
@@ -65,13 +67,15 @@ def build_neighborhood(knobs: NeighborhoodKnobs, season: Season, rng: np.random.
     graded = grade(relief, [pad for p in parcels for pad in _pads(p)], plan.front, half)
     shop = replace(shop, relief=graded)
     homes = homes_of(parcels, shop, roofs_rng)
-    spots = find_spots(plan, parcels, shop, cars_rng)
+    rounds = plan_rounds(plan, ways_rng)
+    walks = rounds.walk_lines()
+    spots = find_spots(plan, parcels, rounds, shop, cars_rng)
     holes = _holes(homes)
 
     solid = np.array([home.plan() for home in homes], dtype=object)
-    kerbside = plan_kerbside(plan, parcels, homes, solid, shop, posts_rng)
+    kerbside = plan_kerbside(plan, parcels, homes, solid, walks, shop, posts_rng)
     borders = plan_borders(division, parcels, plan, shop, border_rng)
-    blocked = obstacles(plan, parcels, holes, kerbside, borders)
+    blocked = obstacles(plan, parcels, holes, kerbside, borders, walks)
     trees = plan_trees(plan, parcels, blocked, shop, tree_rng)
 
     builder = shop.builder
@@ -82,9 +86,18 @@ def build_neighborhood(knobs: NeighborhoodKnobs, season: Season, rng: np.random.
     builder.add(*build_greenery(trees, borders, parcels, blocked, shop, tree_rng))
     trunks = shapely.buffer(shapely.points(trees.xy), 0.4, quad_segs=1)
     pools = [p.garden.coping for p in parcels if p.garden.coping is not None]
-    busy = [blocked.solid, blocked.posts, blocked.lines, spots.plan, trunks, np.array(pools, dtype=object)]
-    crowd, standing = people(plan, parcels, np.concatenate(busy), shop, people_rng)
+    busy = [
+        blocked.solid,
+        blocked.posts,
+        blocked.lines,
+        spots.plan,
+        trunks,
+        np.array(pools, dtype=object),
+        walks,
+    ]
+    crowd, standing = people(parcels, np.concatenate(busy), shop, people_rng)
     builder.add(*crowd, *far_objects(plan, lie_of(plane, plan, relief), shop, far))
+    movers = set_out(plan, rounds, shop, motion_rng)
     counts = (
         ("cars", len(spots.place)),
         ("trees", len(trees.xy)),
@@ -93,9 +106,11 @@ def build_neighborhood(knobs: NeighborhoodKnobs, season: Season, rng: np.random.
         ("utility poles", sum(len(p) for p in kerbside.overhead.poles)),
         ("service drops", len(kerbside.overhead.drops)),
         ("lamps", len(kerbside.lamps)),
-        ("people", len(standing)),
+        ("people who stand", len(standing)),
+        ("vehicles that drive", sum(m.kind != "person" for m in movers)),
+        ("people who walk or run", sum(m.kind == "person" for m in movers)),
     )
-    return _world(plan, parcels, graded, shop, counts)
+    return _world(plan, parcels, graded, shop, counts, movers)
 
 
 def _settle(
@@ -152,6 +167,7 @@ def _world(
     graded: Graded,
     shop: NeighborhoodWorkshop,
     counts: tuple[tuple[str, int], ...],
+    movers: tuple[Mover, ...],
 ) -> World:
     merged = shop.builder.merge()
     x, y, half = _inner_square(plan.outline)
@@ -175,6 +191,7 @@ def _world(
             ("sheds", sum(p.hut is not None for p in parcels)),
             *counts,
         ),
+        movers=movers,
     )
 
 

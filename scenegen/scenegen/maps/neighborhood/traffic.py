@@ -1,4 +1,4 @@
-"""Cars on driveways, along kerbs and on the move."""
+"""Cars on driveways, along those kerbs where nobody drives."""
 
 from __future__ import annotations
 
@@ -12,18 +12,22 @@ from jaxtyping import Bool, Float64
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along, clear_of, first_come, rectangles
 from scenegen.geometry.relief import slopes
+from scenegen.maps.neighborhood.motion import Rounds
 from scenegen.maps.neighborhood.parcels import Parcel
 from scenegen.maps.neighborhood.streets import CARRIAGEWAY_M, KERB_M, StreetPlan
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
 from scenegen.parts.vehicles.park import park, size_m
 
-_PARKED_M, _DRIVING_M = CARRIAGEWAY_M / 2 - 1.05, 1.55
+_PARKED_M = CARRIAGEWAY_M / 2 - 1.05
 _PITCH_M, _CLEAR_M = 6.2, 9.0
+_FROM_LANE_M, _FROM_WALK_M = 1.5, 0.45
+_FREE = 0.45
+"""About the share of kerbs that is left for parking."""
 
 
 @dataclass(frozen=True, eq=False)
 class Spots:
-    """Where vehicles stand or drive.
+    """Where vehicles stand.
 
     Attributes
     ----------
@@ -32,6 +36,7 @@ class Spots:
     lift_m : float64 (vehicles,)
         Height of the ground there above the relief.
     driven, van : bool (vehicles,)
+        Whether it has just come home, with a warm engine; whether it is a van.
     plan : array of shapely.Polygon
         Ground each covers.
     """
@@ -44,22 +49,26 @@ class Spots:
 
 
 def find_spots(
-    plan: StreetPlan, parcels: Sequence[Parcel], shop: NeighborhoodWorkshop, rng: np.random.Generator
+    plan: StreetPlan,
+    parcels: Sequence[Parcel],
+    rounds: Rounds,
+    shop: NeighborhoodWorkshop,
+    rng: np.random.Generator,
 ) -> Spots:
-    """Draw places for all vehicles; they touch nothing."""
+    """Draw places for all vehicles; they touch nothing and stand in nobody's way."""
     knobs = shop.knobs
     home = _on_driveways(parcels, rng.uniform(*knobs.driveway_cars), rng)
-    kerb = _along_streets(plan, rng.uniform(*knobs.parked_cars_per_100_m) / 100, _PARKED_M, rng)
-    moving = _along_streets(plan, rng.uniform(*knobs.moving_cars_per_km) / 2000, _DRIVING_M, rng)
-    place = np.concatenate([home, kerb, moving])
-    lift = np.repeat([KERB_M, 0.0, 0.0], [len(home), len(kerb), len(moving)])
-    driven = np.arange(len(place)) >= len(home) + len(kerb)
-    driven |= rng.uniform(size=len(place)) < 0.12  # just come home
+    kerb = _along_streets(plan, rng.uniform(*knobs.parked_cars_per_100_m) / 100 / _FREE, _PARKED_M, rng)
+    place = np.concatenate([home, kerb])
+    lift = np.repeat([KERB_M, 0.0], [len(home), len(kerb)])
+    driven = rng.uniform(size=len(place)) < 0.12  # just come home
     van = rng.uniform(size=len(place)) < 0.07
     size = np.array([size_m("van") if v else size_m("car") for v in van]).reshape(-1, 3)
     shapes = rectangles(place[:, :2], size[:, 0], size[:, 1], place[:, 2])
     grown = rectangles(place[:, :2], size[:, 0] + 0.7, size[:, 1] + 0.35, place[:, 2])
-    keep = first_come(grown)
+    keep = clear_of(shapes, rounds.lane_lines(), _FROM_LANE_M)
+    keep &= clear_of(shapes, rounds.walk_lines(), _FROM_WALK_M)
+    keep[keep] = first_come(grown[keep])
     solid = np.array([p.solid for p in parcels if p.solid is not None], dtype=object)
     keep &= clear_of(shapes, solid, 0.25)
     road = lift == 0.0
@@ -67,9 +76,8 @@ def find_spots(
     drives = [p.driveway for p in parcels if p.driveway is not None]
     if drives:
         mouths = shapely.buffer(shapely.centroid(np.array(drives, dtype=object)), 0.1)
-        parked = road & ~driven
-        keep[parked] &= clear_of(shapes[parked], np.array(drives, dtype=object), 1.0) & clear_of(
-            shapes[parked], mouths
+        keep[road] &= clear_of(shapes[road], np.array(drives, dtype=object), 1.0) & clear_of(
+            shapes[road], mouths
         )
     return Spots(place[keep], lift[keep], driven[keep], van[keep], shapes[keep])
 
