@@ -40,10 +40,18 @@ def flat_outline(building: Building, volume: Volume) -> tuple[shapely.Polygon, f
         rings = [inset(r, MANSARD_RUN_M - _TUCK_M) for r in volume.rings]
     else:
         return None
-    outline = shapely.Polygon(rings[0], rings[1:])
+    outline = _sound(shapely.Polygon(rings[0], rings[1:]))
     if volume.covered is not None:
         outline = outline.difference(volume.covered.buffer(-_TUCK_M, join_style="mitre"))
     return _without_spikes(outline), level
+
+
+def _sound(outline: shapely.Polygon) -> shapely.Polygon:
+    """Outline, or the largest piece of it where insets of narrow parts cross."""
+    if outline.is_valid:
+        return outline
+    pieces = shapely.get_parts(shapely.make_valid(outline))
+    return max((p for p in pieces if p.geom_type == "Polygon"), key=lambda p: p.area)
 
 
 def _without_spikes(outline: shapely.Polygon) -> shapely.Polygon:
