@@ -195,7 +195,9 @@ def _delaunay(points: np.ndarray) -> np.ndarray:
     """
     try:
         triangles = _by_geos(points)
-    except shapely.GEOSException:  # it walks from triangle to triangle and, once in some hundred worlds, loses its way
+    except (
+        shapely.GEOSException
+    ):  # it walks from triangle to triangle and, once in some hundred worlds, loses its way
         triangles = Delaunay(points).simplices.astype(np.int64)
     a, b, c = (points[triangles[:, k]] for k in range(3))
     doubled = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])

@@ -117,8 +117,8 @@ class Skin:
         for slot in sorted({p[2] for p in self._pieces}):
             own = [v[f] for v, f, k, _ in self._pieces if k == slot]
             rows = self._sites[slot]
-            ids = [model.site(_settled(np.concatenate(own), p, n, r), n, s) for p, n, s, r in rows]
-            first[slot] = np.array(ids), np.array([n for _, n, _, _ in rows])
+            placed = [model.site(_settled(np.concatenate(own), p, n, r), n, s) for p, n, s, r in rows]
+            first[slot] = np.array(placed), np.array([n for _, n, _, _ in rows])
         for vertices, faces, slot, semantic in self._pieces:
             ids, normals = first[slot]
             if self._smooth:

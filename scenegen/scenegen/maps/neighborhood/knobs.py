@@ -2,48 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated
 
-from pydantic import AfterValidator, Field
+from pydantic import Field
 
-from scenegen.foundation.section import Number, Section, Span
-
-
-def _within(low: float, high: float) -> Callable[[tuple[float, float]], tuple[float, float]]:
-    """A check that a range stays inside bounds."""
-
-    def check(value: tuple[float, float]) -> tuple[float, float]:
-        if not low <= value[0] <= value[1] <= high:
-            raise ValueError(f"[{value[0]:g}, {value[1]:g}] lies outside {low:g} to {high:g}")
-        return value
-
-    return check
-
-
-Share = Annotated[Span, AfterValidator(_within(0.0, 1.0))]
-"""A range of shares between 0 and 1."""
+from scenegen.foundation.section import Number, Section, Share, Span, within
 
 
 class NeighborhoodKnobs(Section):
     """Distributions of the neighborhood family; every world draws its own values inside them."""
 
-    extent_m: Annotated[Span, AfterValidator(_within(220.0, 700.0))] = (505.0, 545.0)
+    extent_m: Annotated[Span, within(220.0, 700.0)] = (505.0, 545.0)
     """Side of the square the street network is drawn in [m], 220 to 700; gardens reach a little beyond."""
 
-    lot_width_m: Annotated[Span, AfterValidator(_within(14.0, 45.0))] = (20.0, 27.0)
+    lot_width_m: Annotated[Span, within(14.0, 45.0)] = (20.0, 27.0)
     """Usual width of lots along the street [m]."""
 
-    lot_depth_m: Annotated[Span, AfterValidator(_within(24.0, 55.0))] = (31.0, 38.0)
+    lot_depth_m: Annotated[Span, within(24.0, 55.0)] = (31.0, 38.0)
     """Usual depth of lots [m]: half the distance between parallel streets, without the streets."""
 
-    street_curvature: Annotated[Span, AfterValidator(_within(0.0, 1.5))] = (0.5, 1.1)
+    street_curvature: Annotated[Span, within(0.0, 1.5)] = (0.5, 1.1)
     """How strongly streets wind, 0 for straight ones."""
 
-    cul_de_sac_share: Annotated[Span, AfterValidator(_within(0.0, 0.8))] = (0.25, 0.5)
+    cul_de_sac_share: Annotated[Span, within(0.0, 0.8)] = (0.25, 0.5)
     """Share of street stretches cut into dead ends with turning circles, as far as all stay connected."""
 
-    built_share: Annotated[Span, AfterValidator(_within(0.2, 1.0))] = (0.9, 0.98)
+    built_share: Annotated[Span, within(0.2, 1.0)] = (0.9, 0.98)
     """Share of lots with a house; the rest are meadows."""
 
     modern_share: Share = (0.15, 0.75)
@@ -61,13 +45,13 @@ class NeighborhoodKnobs(Section):
     dry_lawn_share: Share = (0.1, 0.7)
     """Share of lawns that are not watered."""
 
-    pool_share: Annotated[Span, AfterValidator(_within(0.0, 0.7))] = (0.06, 0.28)
+    pool_share: Annotated[Span, within(0.0, 0.7)] = (0.06, 0.28)
     """Share of gardens with a pool."""
 
     shed_share: Share = (0.3, 0.6)
     """Share of gardens with a shed."""
 
-    trees_per_1000_m2: Annotated[Span, AfterValidator(_within(0.0, 16.0))] = (2.0, 3.2)
+    trees_per_1000_m2: Annotated[Span, within(0.0, 16.0)] = (2.0, 3.2)
     """Trees in gardens and commons."""
 
     conifer_share: Share = (0.1, 0.4)
@@ -76,31 +60,31 @@ class NeighborhoodKnobs(Section):
     street_tree_share: Share = (0.2, 0.8)
     """Share of streets with trees on the verge."""
 
-    hedge_share: Annotated[Span, AfterValidator(_within(0.0, 0.8))] = (0.03, 0.1)
+    hedge_share: Annotated[Span, within(0.0, 0.8)] = (0.03, 0.1)
     """Share of garden borders with a hedge."""
 
-    fence_share: Annotated[Span, AfterValidator(_within(0.0, 0.9))] = (0.14, 0.3)
+    fence_share: Annotated[Span, within(0.0, 0.9)] = (0.14, 0.3)
     """Share of the other garden borders with a fence."""
 
-    driveway_cars: Annotated[Span, AfterValidator(_within(0.0, 2.0))] = (0.6, 1.1)
+    driveway_cars: Annotated[Span, within(0.0, 2.0)] = (0.6, 1.1)
     """Cars standing on a driveway, on average."""
 
-    parked_cars_per_100_m: Annotated[Span, AfterValidator(_within(0.0, 14.0))] = (0.8, 2.5)
+    parked_cars_per_100_m: Annotated[Span, within(0.0, 14.0)] = (0.8, 2.5)
     """Cars parked along 100 m of kerb."""
 
-    moving_cars_per_km: Annotated[Span, AfterValidator(_within(0.0, 30.0))] = (1.5, 5.0)
+    moving_cars_per_km: Annotated[Span, within(0.0, 30.0)] = (1.5, 5.0)
     """Cars and vans that drive, on a kilometre of street."""
 
-    walkers_per_100_m: Annotated[Span, AfterValidator(_within(0.0, 10.0))] = (0.1, 0.5)
+    walkers_per_100_m: Annotated[Span, within(0.0, 10.0)] = (0.1, 0.5)
     """People who walk or run, on 100 m of sidewalk."""
 
-    people_per_100_lots: Annotated[Span, AfterValidator(_within(0.0, 200.0))] = (4.0, 18.0)
+    people_per_100_lots: Annotated[Span, within(0.0, 200.0)] = (4.0, 18.0)
     """People who stand about in gardens."""
 
     pole_share: Share = (0.5, 1.0)
     """Share of streets with utility poles and overhead wires; the others have buried cables."""
 
-    relief_m: Annotated[Span, AfterValidator(_within(0.0, 9.0))] = (1.5, 5.0)
+    relief_m: Annotated[Span, within(0.0, 9.0)] = (1.5, 5.0)
     """Amplitude of the terrain [m]."""
 
     flight_ceiling_m: Annotated[Number, Field(ge=30.0, le=300.0)] = 100.0

@@ -16,14 +16,12 @@ from scenegen.geometry.placement import clear_of, first_come, rectangles
 from scenegen.geometry.planar import Triangulation
 from scenegen.geometry.relief import Relief
 from scenegen.geometry.template import Template, place
-from scenegen.geometry.trees import grove
 from scenegen.maps.neighborhood.streets import CARRIAGEWAY_M, FAR_M, StreetPlan, road_lines
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
+from scenegen.parts.vegetation.grove import grove
 
 _COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "grass_watered")
 _BELOW_GROUND_M = 1.2
-_SUNK = 0.14
-"""How deep groves stand in the ground, in heights: their lowest boughs hide the trunks they have not."""
 _FINE_RING_M = 45.0
 """Width of the ring around the neighborhood in which the mesh is as fine as the relief."""
 
@@ -169,6 +167,6 @@ def _groves(
     count = len(centre)
     skin = np.array([[shop.palette.pick("tree_crown", rng)] for _ in range(count)], np.int64).reshape(-1, 1)
     scale = np.column_stack([width, width, rng.uniform(8.0, 15.0, count)])
-    position = np.column_stack([centre, shop.relief(centre) - _SUNK * scale[:, 2]])
+    position = np.column_stack([centre, shop.relief(centre)])
     owner = shop.builder.new_objects(count) + np.arange(count)
     return place(grove(rng), position, rng.uniform(0.0, 2 * np.pi, count), scale, skin, owner)
