@@ -27,6 +27,8 @@ _WIRE_GAP_M, _LOW_M = 0.9, 4.4
 _STREET_PITCH_M = (11.0, 19.0)
 _DETAIL, _SHRUBS = 0.5, 3
 """Share of the usual triangles of a tree, since there are a thousand; shrubs tried per garden."""
+_SHRUB_DEPTH_M = 0.15
+"""How deep shrubs stand: beside a pad the mesh of the ground lies a hand below the relief."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +155,7 @@ def build_greenery(
         alike = [r.points for r in rows if r.height_m == height and len(r.points) == corners]
         parts += hedges(alike, height, width, raised, rng)
     place, size = _shrub_spots(parcels, blocked, trees, rng)
-    position = np.column_stack([place, raised.relief(place)])
+    position = np.column_stack([place, raised.relief(place) - _SHRUB_DEPTH_M])
     return parts + shrubs(position, size, rng.uniform(0.0, 2 * np.pi, len(place)), raised, rng)
 
 
