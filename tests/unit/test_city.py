@@ -80,7 +80,7 @@ def test_sites_agree_with_their_faces(world):
 
 def test_size(world):
     assert 100_000 < len(world.sites.area) <= 250_000
-    assert 1_000_000 <= len(world.mesh.faces) <= 1_450_000
+    assert 1_000_000 <= len(world.mesh.faces) <= 1_600_000
     counts = dict(world.counts)
     assert counts["buildings"] >= 200
     assert counts["trees"] >= 300
