@@ -25,7 +25,7 @@ _COMMONS = 2.6
 """How much denser trees stand on commons than in gardens."""
 _WIRE_GAP_M, _LOW_M = 0.9, 4.4
 _STREET_PITCH_M = (11.0, 19.0)
-_DETAIL, _SHRUBS = 0.62, 3
+_DETAIL, _SHRUBS = 0.5, 3
 """Share of the usual triangles of a tree, since there are a thousand; shrubs tried per garden."""
 _SHRUB_DEPTH_M = 0.15
 """How deep shrubs stand: beside a pad the mesh of the ground lies a hand below the relief."""
