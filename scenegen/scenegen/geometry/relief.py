@@ -57,7 +57,7 @@ def draw_relief(
     return WaveRelief(vector, rng.uniform(0.0, 2 * np.pi, waves), 1.6 * amplitude_m * share)
 
 
-def sample_height_field(relief: WaveRelief, half_m: float, cell_m: float) -> HeightField:
+def sample_height_field(relief: Relief, half_m: float, cell_m: float) -> HeightField:
     """Sample a relief on a square grid centred at the origin."""
     count = round(2 * half_m / cell_m) + 1
     axis = np.linspace(-half_m, half_m, count)

@@ -73,6 +73,44 @@ def graded_points(
     return np.concatenate(bands)
 
 
+def finer_near(
+    core: shapely.Polygon,
+    near: np.ndarray,
+    spacing_m: tuple[float, float],
+    reach_m: float,
+    far_m: float,
+    rng: np.random.Generator,
+    leap: float = 2.0,
+) -> Float64[np.ndarray, "points 2"]:
+    """`graded_points` around a polygon, with a finer lattice near the things inside it.
+
+    Parameters
+    ----------
+    core : shapely.Polygon
+    near : array of shapely geometries
+        What casts shadows: walls, cars, fences.
+    spacing_m : (float, float)
+        Of the lattice near them, and elsewhere [m].
+    reach_m : float
+        How far "near" is [m].
+    far_m, leap : float
+        See `graded_points`.
+    rng : numpy.random.Generator
+    """
+    tree = shapely.STRtree(near)
+
+    def close(points: np.ndarray, distance_m: float) -> np.ndarray:
+        mask = np.zeros(len(points), bool)
+        mask[tree.query(shapely.points(points), predicate="dwithin", distance=distance_m)[0]] = True
+        return mask
+
+    x0, y0, x1, y1 = core.bounds
+    fine = hexagonal(x0, y0, x1, y1, spacing_m[0], rng)
+    fine = fine[shapely.contains_xy(core, fine)]
+    coarse = graded_points(core.buffer(3.0), far_m, spacing_m[1], rng, leap)
+    return np.concatenate([fine[close(fine, reach_m)], coarse[~close(coarse, reach_m + spacing_m[0] / 2)]])
+
+
 def contact_points(
     outlines: Sequence[shapely.Polygon], spacing_m: float, distance_m: float
 ) -> Float64[np.ndarray, "points 2"]:

@@ -13,7 +13,7 @@ from scenegen.geometry.ground import Region, drape
 from scenegen.geometry.hidden import push_out
 from scenegen.geometry.part import Part
 from scenegen.geometry.planar import triangulate
-from scenegen.geometry.scatter import contact_points, graded_points, hexagonal
+from scenegen.geometry.scatter import contact_points, finer_near
 from scenegen.maps.city.districts import Block, Layout
 from scenegen.maps.city.markings import marking_quads
 from scenegen.maps.city.outskirts import FAR_M, far_regions
@@ -96,24 +96,9 @@ def _lattice(
     plan: StreetPlan, solid: Sequence[shapely.Polygon], cars: np.ndarray, rng: np.random.Generator
 ) -> np.ndarray:
     """Free points: a row along walls, a lattice that is finer near walls and cars, coarser bands around the city."""
-    near = shapely.STRtree(np.concatenate([np.asarray(solid, dtype=object), cars]))
-
-    def close(points: np.ndarray, reach_m: float) -> np.ndarray:
-        mask = np.zeros(len(points), bool)
-        mask[near.query(shapely.points(points), predicate="dwithin", distance=reach_m)[0]] = True
-        return mask
-
-    x0, y0, x1, y1 = plan.outline.bounds
-    fine = hexagonal(x0, y0, x1, y1, _FINE_M, rng)
-    fine = fine[shapely.contains_xy(plan.outline, fine)]
-    coarse = graded_points(plan.outline.buffer(3.0), FAR_M, _COARSE_M, rng, _LEAP)
-    return np.concatenate(
-        [
-            contact_points(solid, *_WALL_ROW),
-            fine[close(fine, _NEAR_M)],
-            coarse[~close(coarse, _NEAR_M + _FINE_M / 2)],
-        ]
-    )
+    near = np.concatenate([np.asarray(solid, dtype=object), cars])
+    lattice = finer_near(plan.outline, near, (_FINE_M, _COARSE_M), _NEAR_M, FAR_M, rng, _LEAP)
+    return np.concatenate([contact_points(solid, *_WALL_ROW), lattice])
 
 
 def _line_spacing(region: Region) -> float:

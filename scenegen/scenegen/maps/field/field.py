@@ -9,6 +9,7 @@ from scenegen.buildings.roof_gear import draw_roof_gear
 from scenegen.buildings.shells import build_shells
 from scenegen.climate.season import Season
 from scenegen.geometry.builder import GeometryBuilder
+from scenegen.geometry.relief import sample_height_field
 from scenegen.maps.field.bales import build_bales
 from scenegen.maps.field.country import lay_out_country
 from scenegen.maps.field.crowd import build_crowd
@@ -19,7 +20,7 @@ from scenegen.maps.field.houses import plan_houses
 from scenegen.maps.field.knobs import FieldKnobs
 from scenegen.maps.field.moving import build_movers
 from scenegen.maps.field.outskirts import far_objects
-from scenegen.maps.field.relief import draw_land, height_field, level
+from scenegen.maps.field.relief import draw_land, level
 from scenegen.maps.field.terrain import build_terrain
 from scenegen.maps.field.traffic import build_traffic
 from scenegen.maps.field.workshop import FieldWorkshop
@@ -90,7 +91,7 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
         corner_site=merged.corner_site,
         sites=merged.sites,
         palette=palette.surfaces(),
-        ground=height_field(relief, half + 60.0, 4.0),
+        ground=sample_height_field(relief, half + 60.0, 4.0),
         flight_box_m=((-inner, -inner, 0.0), (inner, inner, knobs.flight_ceiling_m)),
         counts=(
             ("pitches", len(grounds.pitches)),

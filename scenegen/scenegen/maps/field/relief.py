@@ -9,7 +9,6 @@ from jaxtyping import Float64
 
 from scenegen.geometry.relief import Relief, WaveRelief, draw_relief
 from scenegen.maps.field.frame import Plot
-from scenegen.world import HeightField
 
 _RAMP_M = 14.0
 _NEAR_M, _FAR_M = 260.0, 1500.0
@@ -83,15 +82,6 @@ def level(land: Relief, platforms: tuple[Plot, ...]) -> LevelledRelief:
     unit = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
     mean = [land(p.frame.world(unit * np.array([p.half_x_m, p.half_y_m]))).mean() for p in platforms]
     return LevelledRelief(land, platforms, np.array(mean))
-
-
-def height_field(relief: Relief, half_m: float, cell_m: float) -> HeightField:
-    """Sample a relief on a square grid centred at the origin."""
-    count = round(2 * half_m / cell_m) + 1
-    axis = np.linspace(-half_m, half_m, count)
-    east, north = np.meshgrid(axis, axis)
-    height = relief(np.column_stack([east.ravel(), north.ravel()])).reshape(count, count)
-    return HeightField((-half_m, -half_m), 2 * half_m / (count - 1), height.astype(np.float32))
 
 
 def _smooth(t: np.ndarray) -> np.ndarray:

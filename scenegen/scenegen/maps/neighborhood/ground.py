@@ -12,7 +12,7 @@ from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region, drape
 from scenegen.geometry.part import Part
 from scenegen.geometry.planar import Triangulation, triangulate
-from scenegen.geometry.scatter import contact_points, graded_points, hexagonal
+from scenegen.geometry.scatter import contact_points, finer_near
 from scenegen.maps.neighborhood.markings import marking_quads
 from scenegen.maps.neighborhood.outskirts import far_regions
 from scenegen.maps.neighborhood.parcels import Parcel
@@ -85,24 +85,9 @@ def _lattice(
     rng: np.random.Generator,
 ) -> np.ndarray:
     """Free points: a row along walls, a lattice that is finer near what casts shadows, coarser bands farther out."""
-    near = shapely.STRtree(np.concatenate([np.asarray(solid, dtype=object), cars, borders]))
-
-    def close(points: np.ndarray, reach_m: float) -> np.ndarray:
-        mask = np.zeros(len(points), bool)
-        mask[near.query(shapely.points(points), predicate="dwithin", distance=reach_m)[0]] = True
-        return mask
-
-    x0, y0, x1, y1 = plan.outline.bounds
-    fine = hexagonal(x0, y0, x1, y1, _FINE_M, rng)
-    fine = fine[shapely.contains_xy(plan.outline, fine)]
-    coarse = graded_points(plan.outline.buffer(3.0), FAR_M, _COARSE_M, rng)
-    return np.concatenate(
-        [
-            contact_points(solid, *_WALL_ROW),
-            fine[close(fine, _NEAR_M)],
-            coarse[~close(coarse, _NEAR_M + _FINE_M / 2)],
-        ]
-    )
+    near = np.concatenate([np.asarray(solid, dtype=object), cars, borders])
+    lattice = finer_near(plan.outline, near, (_FINE_M, _COARSE_M), _NEAR_M, FAR_M, rng)
+    return np.concatenate([contact_points(solid, *_WALL_ROW), lattice])
 
 
 def _line_spacing(region: Region) -> float:
