@@ -20,7 +20,7 @@ from scenegen.geometry.scatter import contact_points
 PARAPET_WIDTH_M = 0.28
 MANSARD_RUN_M = 1.1
 _TUCK_M, _NEEDLE_M = 0.02, 0.03
-_FLAT_M, _EDGE_M, _SLOPE_M, _EAVES_SITES_M = 3.6, 2.4, 4.4, 10.0
+_FLAT_M, _EDGE_M, _SLOPE_M, _EAVES_SITES_M = 4.0, 2.7, 4.4, 10.0
 """Spacing of sites on flat roofs, along their parapets, on slopes and along eaves."""
 _PARAPET_ROW, _GEAR_ROW = (2.3, -1.2), (1.8, 0.1)
 """Spacing and distance of the rows behind parapets and around what stands on roofs: there the view changes."""

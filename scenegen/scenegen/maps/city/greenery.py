@@ -37,7 +37,7 @@ _FLORA = (
 )
 """Trees of streets and of gardens up to a latitude [deg], with their weights; one kind to a street."""
 _HEDGE_HEIGHTS_M, _HEDGE_WIDTH_M, _PATH_M = (0.95, 1.25, 1.6), 0.8, 0.7
-_MOST_TRIANGLES = 340_000
+_MOST_TRIANGLES = 250_000
 """For all trees of a city: the more there are, the plainer they are."""
 
 

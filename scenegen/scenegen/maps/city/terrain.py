@@ -23,11 +23,11 @@ from scenegen.maps.city.uses import Use
 from scenegen.maps.city.workshop import CityWorkshop
 
 KERB_M = 0.12
-_FINE_M, _COARSE_M, _NEAR_M = 2.9, 4.5, 3.8
+_FINE_M, _COARSE_M, _NEAR_M = 3.3, 5.5, 3.8
 """Spacing of the lattice within `_NEAR_M` of walls and cars, and elsewhere."""
 _LEAP, _FIELD_LINE_M = 3.5, 12.0
 """Around the city: how much coarser the lattice starts than inside, and the spacing along the outlines of fields."""
-_LINE_M, _CAR_LINE_M = 3.9, 1.5
+_LINE_M, _CAR_LINE_M = 4.4, 1.7
 """Spacing along lines: of paving and kerbs, and around cars."""
 _FAR_LINES_M, _FAR_TUCK_M, _FAR_ROW, _FAR_BESIDE_M = 350.0, 0.3, (14.0, 7.0), 2.5
 """Around the city: how far out plain buildings and groves have contact lines, how far these lie below them, their
@@ -35,9 +35,9 @@ rows of points, and how far beyond the sites keep clear of them."""
 _SILL_M = 0.15
 """How far below a car the ground still looks out past its sill."""
 _ROAD_GRAIN_M, _GRAIN_M = 0.6, 0.9
-_WALL_ROW = (1.6, 1.0)
+_WALL_ROW = (1.8, 1.0)
 """Spacing, distance: the row of points along walls, and the spacing on the contact line itself."""
-_CAR_ROWS = ((1.6, 0.65), (3.2, 1.7))
+_CAR_ROWS = ((1.8, 0.65), (3.6, 1.7))
 """The same for rows around cars: what a car hides of the sky falls off within its height."""
 _TUCK_M = 0.01
 
