@@ -1,0 +1,1 @@
+"""Planners: `five_section` and `waypoint` steer by the depth map, `straight` by nothing but the goal."""
