@@ -1,6 +1,7 @@
 """Which movers appear in a clip, and where in an image they can be.
 
-The first is chosen once by the clip's whole path, so that nothing ever pops up or vanishes.
+The first is chosen once by the clip's whole path, so that nothing ever pops up or vanishes. In closed loop nobody knows
+the path beforehand: there every instant has those that some camera sees.
 """
 
 from __future__ import annotations
@@ -51,14 +52,7 @@ def choose(
     if not len(movers):
         return ()
     company = Company.of(movers)
-    middle = company.poses_over(times_s)[..., :3, 3]
-    middle[..., 2] += company.box[:, :, 2].mean(axis=1)
-    # Boxes need not be centred on the origin, and they pitch and roll: a little more than half the diagonal.
-    radius = 0.55 * np.linalg.norm(np.ptp(company.box, axis=1), axis=1) + 0.2
-    relative = np.einsum("pni,pij->pnj", middle - poses[:, None, :3, 3], poses[:, :3, :3])
-    distance = np.linalg.norm(relative, axis=-1)
-    large = camera.focal_px * 2.0 * radius > _SMALLEST_PX * distance
-    seen = _in_view(relative, radius, camera) & large
+    seen, distance = _sight(company, company.poses_over(times_s), camera, poses)
     nearest = np.where(seen, distance, np.inf).min(axis=0)
     order: Int64[np.ndarray, "movers"] = np.argsort(nearest, kind="stable")
     triangles = np.cumsum([len(movers[k].body.faces) for k in order])
@@ -66,18 +60,37 @@ def choose(
     return tuple(sorted(kept.tolist()))
 
 
+def in_view(
+    company: Company, time_s: float, camera: Camera, poses: Float64[np.ndarray, "views 4 4"]
+) -> Bool[np.ndarray, "views movers"]:
+    """Which movers come into which of several views at one time."""
+    return _sight(company, company.poses(time_s)[None], camera, poses)[0]
+
+
 def around(
-    company: Company, time_s: float, camera: Camera, pose: Float64[np.ndarray, "4 4"]
-) -> Bool[np.ndarray, "rows columns"]:
-    """Pixels whose rays can meet a mover at one time: rectangles around the projections of their boxes."""
-    near = np.zeros((camera.height_px, camera.width_px), bool)
-    if not company.movers:
+    company: Company,
+    time_s: float,
+    camera: Camera,
+    poses: Float64[np.ndarray, "views 4 4"],
+    who: Int64[np.ndarray, "some"] | None = None,
+) -> Bool[np.ndarray, "views rows columns"]:
+    """Pixels whose rays can meet a mover at one time: rectangles around the projections of their boxes.
+
+    Parameters
+    ----------
+    who : int64 (some,), optional
+        Movers that count; by default all.
+    """
+    near = np.zeros((len(poses), camera.height_px, camera.width_px), bool)
+    box, move = company.box, company.poses(time_s)
+    if who is not None:
+        box, move = box[who], move[who]
+    if not len(box):
         return near
-    corner = np.stack([company.box[:, pick, range(3)] for pick in _CORNERS], axis=1)
-    move = company.poses(time_s)
+    corner = np.stack([box[:, pick, range(3)] for pick in _CORNERS], axis=1)
     world = np.einsum("nij,nkj->nki", move[:, :3, :3], corner) + move[:, None, :3, 3]
-    local = (world - pose[:3, 3]) @ pose[:3, :3]
-    points, ahead = _before_the_camera(local)
+    local = np.stack([((world - pose[:3, 3]) @ pose[:3, :3]) for pose in poses])
+    points, ahead = _before_the_camera(local.reshape(-1, 8, 3))
     place = points[..., :2] / points[..., 2:] * camera.focal_px + camera.centre_px
     seen = ahead[..., None]
     low = np.where(seen, place, np.inf).min(axis=1) - _MARGIN_PX
@@ -85,8 +98,11 @@ def around(
     size = np.array([camera.width_px, camera.height_px])
     first = np.clip(np.floor(low), 0, size).astype(np.int64)
     last = np.clip(np.ceil(high), 0, size).astype(np.int64)
-    for (left, top), (right, bottom) in zip(first.tolist(), last.tolist(), strict=True):
-        near[top:bottom, left:right] = True
+    some = np.flatnonzero((first < last).all(axis=1))
+    for view, (left, top), (right, bottom) in zip(
+        (some // len(box)).tolist(), first[some].tolist(), last[some].tolist(), strict=True
+    ):
+        near[view, top:bottom, left:right] = True
     return near
 
 
@@ -110,6 +126,26 @@ def _before_the_camera(
     points = np.concatenate([corner, cut], axis=1)
     points[..., 2] = np.where(ahead, points[..., 2], 1.0)
     return points, ahead
+
+
+def _sight(
+    company: Company,
+    move: Float64[np.ndarray, "times movers 4 4"],
+    camera: Camera,
+    poses: Float64[np.ndarray, "poses 4 4"],
+) -> tuple[Bool[np.ndarray, "poses movers"], Float64[np.ndarray, "poses movers"]]:
+    """Whether poses see the bounding spheres of movers, large enough to count, and how far they are [m].
+
+    Movers stand where they are at each pose's time, or all at one.
+    """
+    middle = move[..., :3, 3].copy()
+    middle[..., 2] += company.box[:, :, 2].mean(axis=1)
+    # Boxes need not be centred on the origin, and they pitch and roll: a little more than half the diagonal.
+    radius = 0.55 * np.linalg.norm(np.ptp(company.box, axis=1), axis=1) + 0.2
+    relative = np.einsum("pni,pij->pnj", middle - poses[:, None, :3, 3], poses[:, :3, :3])
+    distance = np.linalg.norm(relative, axis=-1)
+    large = camera.focal_px * 2.0 * radius > _SMALLEST_PX * distance
+    return _in_view(relative, radius, camera) & large, distance
 
 
 def _in_view(

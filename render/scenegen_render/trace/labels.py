@@ -11,6 +11,7 @@ from scenegen_render import backend
 from scenegen_render.camera import Camera
 from scenegen_render.trace.lit import Lit
 from scenegen_render.trace.pose import DevicePose, Pose, device_pose
+from scenegen_render.trace.scenery import Scenery
 from scenegen_render.trace.surface import moving_corners
 from scenegen_render.trace.troupe import Instant, View
 
@@ -54,7 +55,7 @@ class Footing:
     own: Any
 
 
-def footing(lit: Lit, now: Instant, face: Any, valid: Any) -> Footing:
+def footing(lit: Scenery, now: Instant, face: Any, valid: Any) -> Footing:
     """Look the triangles up, in the world's vertices or in those of the movers."""
     mi, dr = backend.modules()
     moving = valid & (face >= lit.first_moving)

@@ -20,20 +20,16 @@ from scenegen_render.scene import LoadedWorld
 from scenegen_render.trace import open_air
 from scenegen_render.trace.air import Air, device_air
 from scenegen_render.trace.ripples import slope_per_axis
-from scenegen_render.trace.troupe import Troupe, face_object, face_record
+from scenegen_render.trace.scenery import Scenery, scenery
+from scenegen_render.trace.troupe import face_object, face_record
 
 
 @dataclass(frozen=True, eq=False)
-class Lit:
+class Lit(Scenery):
     """A loaded world at one moment, ready to be photographed from anywhere.
 
     Attributes
     ----------
-    loaded : LoadedWorld
-    troupe : Troupe
-        The movers that appear.
-    first_moving : mitsuba.UInt
-        Index of the movers' first face in the tables.
     face : mitsuba.Float, 8 per face
         Temperatures [K] of the three corners, ``surface | semantic << 16``; irradiances [W m^-2] of the three
         corners, packed normal (none for movers). One 32-byte row holds all a hit needs.
@@ -50,9 +46,6 @@ class Lit:
         Belongs to the world: the texture stays when weather and hour change.
     """
 
-    loaded: LoadedWorld
-    troupe: Troupe
-    first_moving: Any
     face: Any
     object: Any
     surface: Any
@@ -92,7 +85,8 @@ def light(
     _check("irradiance", irradiance, len(world.sites.area), "sites")
     counts = [len(m.body.site_position) for m in world.movers]
     _check("temperature", state.moving_K, sum(counts), "sites of the movers")
-    company = Company.of([world.movers[k] for k in cast])
+    shape = scenery(loaded, cast)
+    company = shape.troupe.company
     parts = np.split(state.moving_K, np.cumsum(counts)[:-1])
     warm = np.concatenate([state.temperature_K, *(parts[k] for k in cast)])
     shone = np.concatenate([irradiance, open_air.irradiance(company, world, state, irradiance, band_um)])
@@ -100,8 +94,8 @@ def light(
     face, objects = _face_tables(loaded, company, backend.upload(warm), backend.upload(shone))
     return Lit(
         loaded=loaded,
-        troupe=Troupe(company),
-        first_moving=dr.opaque(mi.UInt, len(world.face_object)),
+        troupe=shape.troupe,
+        first_moving=shape.first_moving,
         face=face,
         object=objects,
         surface=backend.upload(_surface_table(world.palette, state.texture_K)),

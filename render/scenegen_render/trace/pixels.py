@@ -62,3 +62,17 @@ def on_device(plane: Float32[np.ndarray, "rays 2"]) -> Any:
     """The same as a `mitsuba.Vector2f`, evaluated once per tracer."""
     mi, _ = backend.modules()
     return mi.Vector2f(backend.upload(plane[:, 0]), backend.upload(plane[:, 1]))
+
+
+def repeated(lanes: Any, views: int) -> Any:
+    """The same values for each of several views, one after the other; not evaluated."""
+    mi, dr = backend.modules()
+    width = dr.width(lanes)
+    return dr.gather(type(lanes), lanes, dr.arange(mi.UInt, views * width) % width)
+
+
+def place(tiled: Any, lane: Any) -> Any:
+    """Row-major pixel of lanes that go tile by tile and view by view; pixels are counted on from view to view."""
+    mi, dr = backend.modules()
+    first = lane // dr.width(tiled) * dr.width(tiled)
+    return dr.gather(mi.UInt, tiled, lane - first) + first

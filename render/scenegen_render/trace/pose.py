@@ -42,6 +42,36 @@ def device_pose(matrix: Pose, double: bool = False) -> DevicePose:
     return DevicePose((columns[0], columns[1], columns[2]), columns[3])
 
 
+@dataclass(frozen=True, eq=False)
+class Fleet:
+    """Poses of several cameras on the device, to be looked up lane by lane.
+
+    Attributes
+    ----------
+    rows : mitsuba.Float64, 12 per view
+        Upper three rows of `world_from_camera`.
+    count : int
+    """
+
+    rows: Any
+    count: int
+
+    @staticmethod
+    def of(poses: Float64[np.ndarray, "views 4 4"]) -> Fleet:
+        """Upload poses, at least one."""
+        mi, dr = backend.modules()
+        rows = np.ascontiguousarray(poses[:, :3], np.float64).reshape(-1)
+        return Fleet(dr.opaque(mi.Float64(rows)), len(poses))
+
+    def pose(self, view: Any, double: bool = False) -> DevicePose:
+        """The pose of each lane's view, in float32 or float64; the same numbers as `device_pose`."""
+        mi, dr = backend.modules()
+        vector = mi.Vector3d if double else mi.Vector3f
+        x, y, z = (dr.gather(mi.Vector4d, self.rows, view * 3 + k) for k in range(3))
+        columns = [vector(x[k], y[k], z[k]) for k in range(4)]
+        return DevicePose((columns[0], columns[1], columns[2]), columns[3])
+
+
 def relative(other: Pose, pose: Pose) -> Pose:
     """Transform from the camera frame of `pose` to that of `other`, in float64."""
     rotation = other[:3, :3].T

@@ -8,6 +8,7 @@ sub-sample's own reflectance and path.
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
 from typing import Any
 
@@ -60,10 +61,12 @@ class Sampler:
     count : int
     groups : int
         Groups of up to four sub-samples that make up a pixel.
+    views : int
+        Images cast together; one but for `repeated`.
     """
 
     def __init__(self, camera: Camera, count: int) -> None:
-        self.count = count
+        self.count, self.views = count, 1
         self._group = max(k for k in range(1, _LARGEST_GROUP + 1) if count % k == 0)
         self._metre_per_depth = 1.0 / camera.focal_px
         pattern = pixels.subsample_pattern(count)
@@ -74,6 +77,15 @@ class Sampler:
         lanes = np.arange(self.groups * camera.width_px * camera.height_px, dtype=np.uint32)
         self._tiled = backend.upload(pixels.tiled(camera))
         self._in_pixel = backend.upload(lanes % np.uint32(self.groups))
+
+    def repeated(self, views: int) -> Sampler:
+        """The same sub-samples for several views, one view after the other; the number is no part of a kernel."""
+        many = copy(self)
+        many.views = views
+        many._plane, many._corner, many._in_pixel = (
+            pixels.repeated(lanes, views) for lanes in (self._plane, self._corner, self._in_pixel)
+        )
+        return many
 
     def cast(self, lit: Lit, view: View, pose: DevicePose) -> Samples:
         """Send every sub-sample and shade what it meets."""
@@ -129,9 +141,8 @@ class Sampler:
         return groups if self.groups == 1 else dr.block_sum(groups, self.groups) * (1.0 / self.groups)
 
     def _pixel_of(self, sample: Any) -> Any:
-        """Row-major index of the pixel of a sub-sample."""
-        mi, dr = backend.modules()
-        return dr.gather(mi.UInt, self._tiled, sample // self.count)
+        """Row-major index of the pixel of a sub-sample, counted on from view to view."""
+        return pixels.place(self._tiled, sample // self.count)
 
     def _members(self, values: Any, lane: Any) -> list[Any]:
         """Values of the sub-samples of each group."""

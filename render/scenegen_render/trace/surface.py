@@ -9,6 +9,7 @@ from typing import Any
 from scenegen_render import backend
 from scenegen_render.trace import noise
 from scenegen_render.trace.lit import Lit
+from scenegen_render.trace.scenery import Scenery
 from scenegen_render.trace.troupe import Instant
 
 _OCTAVES = ((1.0, 1.0), (3.6, 0.53), (13.0, 0.28))
@@ -194,7 +195,7 @@ def moving_normal(lit: Lit, now: Instant, own: Any, active: Any = True) -> Any:
     return dr.normalize(dr.cross(b - a, c - a))
 
 
-def moving_corners(lit: Lit, now: Instant, own: Any, active: Any = True) -> tuple[Any, Any, Any]:
+def moving_corners(lit: Scenery, now: Instant, own: Any, active: Any = True) -> tuple[Any, Any, Any]:
     """World positions of the corners of movers' faces, counted from the troupe's first [m]."""
     mi, dr = backend.modules()
     index = (dr.gather(mi.UInt, lit.troupe.faces, own * 3 + k, active) for k in range(3))

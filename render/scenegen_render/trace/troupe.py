@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from jaxtyping import Float32, UInt32
+from jaxtyping import Float32, Float64, UInt32
 
 from scenegen.movers.company import Company
 from scenegen_render import backend
 from scenegen_render.camera import Camera
-from scenegen_render.trace.casting import around
+from scenegen_render.trace.casting import around, in_view
 from scenegen_render.trace.pose import Pose
 
 _UNSEEN = 2
@@ -46,24 +46,24 @@ class Instant:
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """Movers at one time, and where in one image they can be.
+    """Movers at one time, and where in one image (or in several, one after the other) they can be.
 
     Attributes
     ----------
     instant : Instant
-    pose : float64 (4, 4)
-        `world_from_camera`.
     near : mitsuba.Bool, 1 per pixel
         Row by row: whether a ray of the pixel can meet a mover. Only there is their scene traced.
     """
 
     instant: Instant
-    pose: Pose
     near: Any
 
 
 class Troupe:
     """Chosen movers of a world.
+
+    Those that no camera sees at an instant may be left out of its scene: their vertices are infinite there, which
+    Embree passes over, so that tables and kernels stay what they are.
 
     Parameters
     ----------
@@ -79,6 +79,8 @@ class Troupe:
     rest : mitsuba.Float, 12 per face
         Corners in the rest pose [m], four floats each; shifted by a vector of the mover's own, so that no two movers
         share a pattern of texture.
+    what, object : mitsuba.UInt, 1 per face
+        ``surface | semantic << 16``, and instance id.
     """
 
     def __init__(self, company: Company) -> None:
@@ -89,29 +91,54 @@ class Troupe:
         self.faces = backend.upload(faces)
         self.present = dr.opaque(mi.Bool, bool(company.movers))
         self.rest = backend.upload(_rest_corners(company))
+        self.what = backend.upload(face_record(company, 0)[:, 3])
+        self.object = backend.upload(face_object(company))
         self._stages: list[_Stage] = []
 
     def seen(self, time_s: float, camera: Camera, pose: Pose) -> View:
         """The movers at one time, as a camera may see them; the last few times are kept."""
         stage = self._stage(time_s)
-        for seen_by, view in stage.views:
-            if seen_by == camera and np.array_equal(view.pose, pose):
+        for seen_by, seen_from, view in stage.views:
+            if seen_by == camera and np.array_equal(seen_from, pose):
                 return view
-        near = backend.upload(around(self.company, time_s, camera, pose))
-        view = View(stage.instant, pose, near)
-        stage.views = [*stage.views[1 - _KEPT :], (camera, view)]
+        near = backend.upload(around(self.company, time_s, camera, pose[None]))
+        view = View(stage.instant, near)
+        stage.views = [*stage.views[1 - _KEPT :], (camera, pose, view)]
         return view
 
-    def _stage(self, time_s: float) -> _Stage:
-        known = [stage for stage in self._stages if stage.instant.time_s == time_s]
+    def seen_by_all(
+        self, time_s: float, camera: Camera, poses: Float64[np.ndarray, "views 4 4"], mirrors: bool
+    ) -> View:
+        """The movers at one time as several cameras see them.
+
+        Parameters
+        ----------
+        mirrors : bool
+            Whether mirrors are looked into, which show what no camera sees. If not, only those are there that some
+            camera sees: a step costs what is near, not what the world has.
+        """
+        who = np.flatnonzero(in_view(self.company, time_s, camera, poses).any(axis=0))
+        near = backend.upload(around(self.company, time_s, camera, poses, who))
+        stage = self._stage(time_s, None if mirrors else tuple(who.tolist()))
+        return View(stage.instant, near)
+
+    def _stage(self, time_s: float, who: tuple[int, ...] | None = None) -> _Stage:
+        """The scene of an instant, with all movers or only some."""
+        known = [s for s in self._stages if s.instant.time_s == time_s and s.who == who]
         if known:
             stage = known[0]
             self._stages.remove(stage)
         else:
-            vertices = np.concatenate([_NOWHERE, self.company.vertices(time_s).astype(np.float32)])
+            company = self.company
+            place = (
+                company.vertices(time_s)
+                if who is None
+                else company.vertices_of(np.array(who, np.int64), time_s)
+            )
+            vertices = np.concatenate([_NOWHERE, place.astype(np.float32)])
             full = len(self._stages) == _KEPT
             stage = self._stages.pop(0) if full else _Stage(vertices, self.faces)
-            stage.move(vertices, time_s)
+            stage.move(vertices, time_s, who)
         self._stages.append(stage)  # the last used last: the first may be overwritten
         return stage
 
@@ -130,13 +157,16 @@ class _Stage:
         self._scene = mi.load_dict(description, optimize=False, parallel=False)
         self._parameters = mi.traverse(self._scene)
 
-    def move(self, vertices: Float32[np.ndarray, "vertices 3"], time_s: float) -> None:
+    def move(
+        self, vertices: Float32[np.ndarray, "vertices 3"], time_s: float, who: tuple[int, ...] | None
+    ) -> None:
         """Put the vertices where they are at a time and rebuild the acceleration structure."""
         on_device = backend.upload(vertices)
         self._parameters["movers.vertex_positions"] = on_device
         self._parameters.update()
         self.instant = Instant(time_s, self._scene, on_device)
-        self.views: list[tuple[Camera, View]] = []
+        self.who = who
+        self.views: list[tuple[Camera, Pose, View]] = []
 
 
 def face_record(company: Company, first_site: int) -> UInt32[np.ndarray, "faces 4"]:

@@ -110,3 +110,13 @@ class Company:
         for pose, first, last in zip(matrices(state), self.first[:-1], self.first[1:], strict=True):
             world[first:last] = np.einsum("ij,nj->ni", pose[:3, :3], rest[first:last]) + pose[:3, 3]
         return world
+
+    def vertices_of(self, who: Int64[np.ndarray, "some"], time_s: float) -> Float64[np.ndarray, "vertices 3"]:
+        """The same for some movers, at a cost that grows with those only; all other vertices are infinite."""
+        world = np.full(self.body.vertices.shape, np.inf)
+        state = self.timetable.at(time_s)[who]
+        for k, own, pose in zip(who.tolist(), state, matrices(state), strict=True):
+            first, last, gait = self.first[k], self.first[k + 1], self.movers[k].gait
+            rest = self.body.vertices[first:last] if gait is None else gait.after(own[TRAVELLED])
+            world[first:last] = np.einsum("ij,nj->ni", pose[:3, :3], rest) + pose[:3, 3]
+        return world

@@ -24,6 +24,14 @@ class Gait:
     stride_m: float
     cycle: Float32[np.ndarray, "phases vertices 3"]
 
+    def after(self, travelled_m: float) -> Float64[np.ndarray, "vertices 3"]:
+        """Vertices in the body's own frame after so much way [m]; the same as `Walkers.step`, for one body."""
+        phases = len(self.cycle)
+        phase = np.float64(travelled_m) / self.stride_m % 1.0 * phases
+        k = min(int(phase), phases - 1)
+        before, after = self.cycle[k], self.cycle[(k + 1) % phases]
+        return np.asarray(before + (phase - k) * (after - before))
+
 
 @dataclass(frozen=True, eq=False)
 class Walkers:

@@ -8,21 +8,13 @@ says; its texture stays on it; what shows no mover does not change by a bit.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 
 from scenegen.classes import Semantic
-from scenegen.climate.season import Season
-from scenegen.foundation.rng import stream
-from scenegen.geometry.builder import GeometryBuilder
-from scenegen.materials.palette import PaletteBuilder
 from scenegen.movers.company import Company
-from scenegen.movers.drive import drive
-from scenegen.movers.stroll import stroll
-from scenegen.parts.workshop import Workshop
 from scenegen.radiometry.atmosphere import Atmosphere
 from scenegen.thermal_state import ThermalState
 from scenegen.world import World
@@ -31,7 +23,7 @@ from scenegen_render.camera import Camera
 from scenegen_render.frame import Frame
 from scenegen_render.knobs import RenderKnobs
 from scenegen_render.reference_scenes import looking, uniform_state
-from scenegen_render.scene import LoadedWorld, load
+from scenegen_render.scene import LoadedWorld
 from scenegen_render.trace import Tracer
 from scenegen_render.trace.casting import MAX_TRIANGLES, around, choose
 from scenegen_render.trace.lit import Lit
@@ -42,44 +34,15 @@ FIRST_ID = 10_000
 
 
 @pytest.fixture(scope="module")
-def peopled(city: World) -> World:
-    """The city of boxes with traffic around its middle block: streets are 12 to 32 m wide."""
-    rng = stream(9, "movers")
-    builder = GeometryBuilder()
-    builder.new_objects(FIRST_ID - 1)
-    palette = PaletteBuilder(rng)
-    shop = Workshop(lambda xy: np.zeros(len(xy)), palette, builder, Season(50.0, 7, 1))
-    lane = np.array([[-2.0, -2.0], [-2.0, 52.0], [52.0, 52.0], [52.0, -2.0]])
-    way = np.array([[2.5, 2.5], [47.5, 2.5], [47.5, 47.5], [2.5, 47.5]])
-    mix = {"car": 0.6, "van": 0.2, "bus": 0.2}
-    movers = [*drive([lane], 5.0, shop, rng, mix=mix), *stroll([way], 4.0, shop, rng)]
-    first = len(city.palette)
-    shifted = [replace(m, body=replace(m.body, surface=m.body.surface + first)) for m in movers]
-    assert len(shifted) > 10 and {m.kind for m in shifted} >= {"car", "person"}
-    return replace(city, palette=city.palette + palette.surfaces(), movers=tuple(shifted))
-
-
-@pytest.fixture(scope="module")
-def loaded(peopled: World) -> LoadedWorld:
-    return load(peopled)
-
-
-@pytest.fixture(scope="module")
-def state(peopled: World, warm_city: ThermalState) -> ThermalState:
-    company = Company.of(peopled.movers)
-    texture = np.array([s.material.texture_K for s in peopled.palette], np.float32)
-    warm = np.full(len(company.site_surface), 310.0, np.float32)
-    return replace(warm_city, texture_K=texture, moving_K=warm)
-
-
-@pytest.fixture(scope="module")
 def tracer() -> Tracer:
     return Tracer(CAMERA, RenderKnobs(sub_samples=3, backward_flow=True, normals=True))
 
 
 @pytest.fixture(scope="module")
-def lit(tracer: Tracer, loaded: LoadedWorld, state: ThermalState, sky_light: np.ndarray) -> Lit:
-    return tracer.light(loaded, state, sky_light, range(len(loaded.world.movers)))
+def lit(
+    tracer: Tracer, peopled_loaded: LoadedWorld, peopled_state: ThermalState, sky_light: np.ndarray
+) -> Lit:
+    return tracer.light(peopled_loaded, peopled_state, sky_light, range(len(peopled_loaded.world.movers)))
 
 
 def shots() -> Iterator[tuple[list[np.ndarray], tuple[float, float, float]]]:
@@ -200,9 +163,9 @@ def test_what_is_hidden_in_the_other_frame_is_hidden_by_something_nearer(
 
 
 def test_pixels_without_movers_are_those_of_an_empty_street(
-    lit: Lit, tracer: Tracer, loaded: LoadedWorld, state: ThermalState, sky_light: np.ndarray
+    lit: Lit, tracer: Tracer, peopled_loaded: LoadedWorld, peopled_state: ThermalState, sky_light: np.ndarray
 ) -> None:
-    empty = tracer.light(loaded, state, sky_light)
+    empty = tracer.light(peopled_loaded, peopled_state, sky_light)
     for (pose, ahead, behind), times in shots():
         with_movers = tracer.frame(lit, pose, ahead, behind, times)
         without = tracer.frame(empty, pose, ahead, behind, times)
@@ -221,8 +184,11 @@ def test_pixels_without_movers_are_those_of_an_empty_street(
             ours, theirs = getattr(with_movers, name)[still], getattr(without, name)[still]
             assert ours.tobytes() == theirs.tobytes(), name
         # A sub-sample may meet what the centre misses, and mirrors show movers.
-        company, mirrors = Company.of(loaded.world.movers), _grown(with_movers.semantic == Semantic.WINDOW)
-        far = ~around(company, times[0], CAMERA, pose) & ~mirrors
+        company, mirrors = (
+            Company.of(peopled_loaded.world.movers),
+            _grown(with_movers.semantic == Semantic.WINDOW),
+        )
+        far = ~around(company, times[0], CAMERA, pose[None])[0] & ~mirrors
         same = with_movers.radiance == without.radiance
         assert far.sum() > 2_000 and same[far].all()
         assert same[~_grown(~still) & ~mirrors].mean() > 0.999
@@ -278,7 +244,7 @@ def test_movers_that_stand_flow_like_the_world(lit: Lit, tracer: Tracer) -> None
 
 
 def test_frames_with_and_without_movers_run_the_same_kernels(
-    loaded: LoadedWorld, state: ThermalState, sky_light: np.ndarray
+    peopled_loaded: LoadedWorld, peopled_state: ThermalState, sky_light: np.ndarray
 ) -> None:
     _, dr = backend.modules()
     tracer = Tracer(CAMERA, RenderKnobs(sub_samples=3, backward_flow=True))
@@ -286,26 +252,26 @@ def test_frames_with_and_without_movers_run_the_same_kernels(
     def kernels(cast: Sequence[int], count: int) -> set[object]:
         dr.kernel_history_clear()
         with dr.scoped_set_flag(dr.JitFlag.KernelHistory):
-            lit = tracer.light(loaded, state, sky_light, cast)
+            lit = tracer.light(peopled_loaded, peopled_state, sky_light, cast)
             for (pose, ahead, behind), times in list(shots())[:count]:
                 tracer.frame(lit, pose, ahead, behind, times)
             history = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
         return {entry["hash"] for entry in history}
 
-    empty, one, all_ = kernels((), 1), kernels((3,), 2), kernels(range(len(loaded.world.movers)), 4)
+    empty, one, all_ = kernels((), 1), kernels((3,), 2), kernels(range(len(peopled_loaded.world.movers)), 4)
     assert len(empty) >= 2
     assert empty == one == all_
 
 
 def test_an_instant_is_the_same_however_it_was_reached(
-    loaded: LoadedWorld, state: ThermalState, sky_light: np.ndarray, tracer: Tracer
+    peopled_loaded: LoadedWorld, peopled_state: ThermalState, sky_light: np.ndarray, tracer: Tracer
 ) -> None:
     """Scenes are used again for other times: order must not show."""
-    cast = range(len(loaded.world.movers))
-    in_order = tracer.light(loaded, state, sky_light, cast)
+    cast = range(len(peopled_loaded.world.movers))
+    in_order = tracer.light(peopled_loaded, peopled_state, sky_light, cast)
     wanted = list(shots())
     first = [tracer.frame(in_order, *poses, times) for poses, times in wanted]
-    backwards = tracer.light(loaded, state, sky_light, cast)
+    backwards = tracer.light(peopled_loaded, peopled_state, sky_light, cast)
     second = [tracer.frame(backwards, *poses, times) for poses, times in wanted[::-1]][::-1]
     for a, b in zip(first, second, strict=True):
         for name, layer in vars(a).items():
@@ -315,14 +281,14 @@ def test_an_instant_is_the_same_however_it_was_reached(
 
 
 def test_in_a_world_of_one_temperature_movers_cannot_be_seen(
-    peopled: World, loaded: LoadedWorld, tracer: Tracer, blackbody: Callable[[float], float]
+    peopled: World, peopled_loaded: LoadedWorld, tracer: Tracer, blackbody: Callable[[float], float]
 ) -> None:
     """Emission and reflection of movers add up to the blackbody whatever their emissivity, mirrors included."""
     T = 300.0
     air = Atmosphere(air_K=T, vapour_pressure_hPa=12.0, uniform_sky_K=T)
     light = np.full(len(peopled.sites.area), np.pi * blackbody(T), np.float32)
     state = uniform_state(peopled, T, air)
-    lit = tracer.light(loaded, state, light, range(len(peopled.movers)))
+    lit = tracer.light(peopled_loaded, state, light, range(len(peopled.movers)))
     for poses, times in shots():
         frame = tracer.frame(lit, *poses, times)
         assert on_movers(frame).any()
