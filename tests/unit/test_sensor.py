@@ -10,6 +10,7 @@ from scenegen.foundation.rng import stream
 from scenegen.radiometry.planck import band_radiance
 from scenegen_render.camera import Camera
 from scenegen_render.sensor.agc import percentile_agc, plateau_agc
+from scenegen_render.sensor.flock import Flock
 from scenegen_render.sensor.knobs import SensorKnobs
 from scenegen_render.sensor.scale import (
     MAX_COUNT,
@@ -167,6 +168,24 @@ def test_plateau_agc_does_not_amplify_a_flat_scene() -> None:
     counts = stream(9).integers(6000, 6004, (32, 32)).astype(np.uint16)
     assert np.ptp(plateau_agc(counts, max_gain=1.0).astype(int)) <= 4
     assert len(np.unique(plateau_agc(np.full((8, 8), 5000, np.uint16)))) == 1
+
+
+def test_cameras_of_a_flock_are_those_of_their_drones_alone() -> None:
+    """Each with a pattern of its own; who comes down earlier leaves the others as they are."""
+    ids, knobs = [7, 3, 12], SensorKnobs()
+    scene = np.stack(_clip(4))
+    flock = Flock(CAMERA, knobs, {k: stream(1, "unit", k) for k in ids})
+    alone = {k: Microbolometer(CAMERA, knobs, stream(1, "unit", k)) for k in ids}
+    for n, flying in enumerate(([7, 3, 12], [12, 7], [7], [12, 3])):
+        frames = np.stack([scene[(n + k) % 4] for k in flying])
+        counts = flock.read(np.array(flying), frames, n / 9.0)
+        for row, k in zip(counts, flying, strict=True):
+            np.testing.assert_array_equal(row, alone[k].read(scene[(n + k) % 4], n / 9.0).counts)
+    same = Flock(CAMERA, knobs, {k: stream(1, "unit", k) for k in ids})
+    first, second = same.read(np.array(ids[:2]), np.stack([scene[0], scene[0]]), 0.0).astype(int)
+    assert (first != second).mean() > 0.5
+    with pytest.raises(ValueError, match="does not follow"):
+        same.read(np.array(ids[:1]), scene[:1], 0.0)
 
 
 def test_a_frame_is_sensed_within_its_budget() -> None:

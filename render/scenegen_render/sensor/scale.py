@@ -45,8 +45,7 @@ class CountScale:
     @property
     def ends(self) -> tuple[float, float]:
         """Band radiance of count 0 and of count 16,383 [W m^-2 sr^-1]."""
-        low, high = band_radiance(np.array([self.low_K, self.high_K]), self.band_um)
-        return float(low), float(high)
+        return _ends(self.low_K, self.high_K, self.band_um)
 
 
 def radiance_to_counts(
@@ -82,6 +81,13 @@ def counts_to_brightness_K(
 ) -> Float32[np.ndarray, "*shape"]:
     """Brightness temperature [K] at the middle of each count: of the blackbody that would read the same."""
     return np.asarray(_decoded(scale)[1][counts])
+
+
+@lru_cache(maxsize=8)
+def _ends(low_K: float, high_K: float, band_um: tuple[float, float]) -> tuple[float, float]:
+    """Kept because every frame asks for them, and the integral over the band takes a tenth of a small frame's time."""
+    low, high = band_radiance(np.array([low_K, high_K]), band_um)
+    return float(low), float(high)
 
 
 @lru_cache(maxsize=8)

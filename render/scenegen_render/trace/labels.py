@@ -9,7 +9,6 @@ import numpy as np
 
 from scenegen_render import backend
 from scenegen_render.camera import Camera
-from scenegen_render.trace.lit import Lit
 from scenegen_render.trace.pose import DevicePose, Pose, device_pose
 from scenegen_render.trace.scenery import Scenery
 from scenegen_render.trace.surface import moving_corners
@@ -77,8 +76,22 @@ def footing(lit: Scenery, now: Instant, face: Any, valid: Any) -> Footing:
     return Footing(a, b - a, c - a, moving, own)
 
 
+def semantic(lit: Scenery, on: Footing, face: Any, valid: Any) -> Any:
+    """Class of what was met; 0 for sky."""
+    mi, dr = backend.modules()
+    standing = dr.gather(mi.UInt, lit.loaded.face_record, face * 4 + 3, valid & ~on.moving)
+    return (standing | dr.gather(mi.UInt, lit.troupe.what, on.own, on.moving)) >> 16
+
+
+def instance(lit: Scenery, on: Footing, face: Any, valid: Any) -> Any:
+    """Object that was met; 0 for sky."""
+    mi, dr = backend.modules()
+    standing = dr.gather(mi.UInt, lit.loaded.face_object, face, valid & ~on.moving)
+    return standing | dr.gather(mi.UInt, lit.troupe.object, on.own, on.moving)
+
+
 def shift(
-    lit: Lit, now: Instant, then: Instant, on: Footing, pose: DevicePose, x: Any, y: Any, depth: Any
+    lit: Scenery, now: Instant, then: Instant, on: Footing, pose: DevicePose, x: Any, y: Any, depth: Any
 ) -> Any:
     """How far the points that were hit move until another instant [m]; zero where nothing moves.
 
@@ -137,7 +150,7 @@ def planar_depth(pose: DevicePose, x: Any, y: Any, corner: Any, normal: Any) -> 
 
 
 def moved(
-    lit: Lit,
+    lit: Scenery,
     then: View,
     camera: Camera,
     plane: Any,

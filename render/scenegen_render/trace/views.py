@@ -21,7 +21,7 @@ from scenegen_render.trace import labels, pixels
 from scenegen_render.trace.lit import Lit
 from scenegen_render.trace.pose import Fleet
 from scenegen_render.trace.radiance import Sampler
-from scenegen_render.trace.scenery import Scenery
+from scenegen_render.trace.scenery import Scenery, met
 from scenegen_render.trace.troupe import View
 
 Layer = Literal["depth", "radiance", "semantic", "instance"]
@@ -128,25 +128,7 @@ class Views:
         plane = pixels.repeated(self._centres, fleet.count)
         towards = pose.turn(plane.x, plane.y, mi.Float(1.0))
         near = dr.gather(mi.Bool, view.near, pixels.place(self._tiled, dr.arange(mi.UInt, dr.width(towards))))
-        world = scenery.loaded.scene.ray_intersect_preliminary(
-            mi.Ray3f(pose.translation, towards), coherent=True
-        )
-
-        def among_movers(origin: Any, direction: Any, t: Any, face: Any, met: Any) -> tuple[Any, Any]:
-            ray = mi.Ray3f(origin, direction)
-            ray.maxt = t
-            mover = view.instant.scene.ray_intersect_preliminary(ray, coherent=True)
-            nearer = mover.is_valid()
-            return dr.select(nearer, mover.prim_index + scenery.first_moving, face), nearer | met
-
-        face, valid = dr.if_stmt(
-            args=(pose.translation, towards, world.t, world.prim_index, world.is_valid()),
-            cond=near,
-            true_fn=among_movers,
-            false_fn=lambda origin, direction, t, face, met: (face, met),
-            label="movers",
-        )
-        return face, valid
+        return met(scenery, view.instant, pose.translation, towards, near)
 
     def _labels(
         self,
@@ -165,13 +147,10 @@ class Views:
             pose, mi.Float64(plane.x), mi.Float64(plane.y), on.corner, dr.cross(on.along, on.up)
         )
         layers = {"depth": dr.select(valid, mi.Float(depth), dr.inf)}
-        standing, troupe, loaded = valid & ~on.moving, scenery.troupe, scenery.loaded
         if "semantic" in want:
-            what = dr.gather(mi.UInt, loaded.face_record, face * 4 + 3, standing)
-            layers["semantic"] = (what | dr.gather(mi.UInt, troupe.what, on.own, on.moving)) >> 16
+            layers["semantic"] = labels.semantic(scenery, on, face, valid)
         if "instance" in want:
-            instance = dr.gather(mi.UInt, loaded.face_object, face, standing)
-            layers["instance"] = instance | dr.gather(mi.UInt, troupe.object, on.own, on.moving)
+            layers["instance"] = labels.instance(scenery, on, face, valid)
         return layers
 
     def _view(self, fleet: Fleet, lanes: int) -> Any:
