@@ -10,8 +10,10 @@ from typing import Any
 
 from scenegen.foundation.errors import InputError, nearest
 from scenegen_flythrough.loop.knobs import LoopKnobs
+from scenegen_flythrough.planners.five_section import FiveSection
 from scenegen_flythrough.planners.planner import Planner
 from scenegen_flythrough.planners.straight import Straight
+from scenegen_flythrough.planners.waypoint import Waypoint
 
 Maker = Callable[[LoopKnobs], Planner]
 
@@ -33,6 +35,12 @@ class PlannerFamily:
 
 
 _FAMILIES = (
+    PlannerFamily(
+        "five_section",
+        "towards the furthest of five bands of the image, as AirSim's navigate.py",
+        lambda knobs: FiveSection(knobs.cruise_mps),
+    ),
+    PlannerFamily("waypoint", "goal-directed by the depth map; brakes within what it sees", Waypoint),
     PlannerFamily(
         "straight", "heads for the goal whatever it sees", lambda knobs: Straight(knobs.cruise_mps)
     ),
