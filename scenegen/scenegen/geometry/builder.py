@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import UInt8, UInt16, UInt32
 
+from scenegen.geometry.beside import beside_things
 from scenegen.geometry.part import Part, concatenate, face_areas
 from scenegen.world import Sites, TriangleMesh
 
@@ -56,6 +57,7 @@ class GeometryBuilder:
         """
         part, face_area = _without_slivers(concatenate(self._parts))
         assert np.isfinite(part.vertices).all() and np.abs(part.vertices).max() < MAX_COORDINATE_M
+        part = beside_things(part)
         surface, owner, area = _site_labels(part, face_area)
         return MergedGeometry(
             mesh=TriangleMesh(part.vertices.astype(np.float32), part.faces.astype(np.uint32)),
