@@ -1,0 +1,213 @@
+"""From a plan to outcomes on disk: fly what is missing, one file per batch. Idempotent; may be killed at any moment."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from scenegen.foundation.errors import InputError, NoSpaceError
+from scenegen.foundation.lock import DirectoryLock
+from scenegen.foundation.pool import Done, Failed, Note, Pool, Strike, Task
+from scenegen_datasets.run import WORKER_ENVIRONMENT, JobError
+from scenegen_datasets.run_log import RunLog, machine
+from scenegen_trainers.campaign.plan import Batch, batches
+from scenegen_trainers.campaign.recipe import FlightRecipe
+from scenegen_trainers.campaign.store import BASE_POINT, CampaignStore, check_output
+from scenegen_trainers.pilots.spec import PilotSpec
+
+WORKER = "scenegen_trainers.campaign.worker:worker"
+"""What a worker process does."""
+
+SHARE_FROM = 2
+"""A world is built a second time by another worker if at least this many of its batches are open."""
+
+
+@dataclass(frozen=True, eq=False)
+class Campaign:
+    """What to fly, where to keep it.
+
+    Attributes
+    ----------
+    recipe : FlightRecipe
+        The recipe without what is swept.
+    points : mapping of str to FlightRecipe
+        Points of a sweep by name; a campaign that sweeps nothing has one, `BASE_POINT`.
+    pilots : tuple of PilotSpec
+        One, or two that are compared.
+    flights : int
+        Of each pilot over each map, at each point.
+    root : Path
+    processes : int
+    """
+
+    recipe: FlightRecipe
+    points: Mapping[str, FlightRecipe]
+    pilots: tuple[PilotSpec, ...]
+    flights: int
+    root: Path
+    processes: int
+
+    @property
+    def swept(self) -> bool:
+        """Whether it has more than the one plain point."""
+        return set(self.points) != {BASE_POINT}
+
+    @cached_property
+    def plans(self) -> Mapping[str, tuple[Batch, ...]]:
+        """Batches of each map; the same for all pilots and points."""
+        knobs = self.recipe.campaign
+        return {map: batches(map, self.flights, knobs) for map in self.recipe.dataset.map}
+
+    def everything(self) -> Iterator[tuple[str, int, Batch]]:
+        """Every batch there is to fly: point, pilot, batch; those of a world follow each other."""
+        for plan in self.plans.values():
+            for batch in plan:
+                for point in self.points:
+                    for pilot in range(len(self.pilots)):
+                        yield point, pilot, batch
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a campaign is.
+
+    Attributes
+    ----------
+    flown, flights : int
+        Flights, those of earlier runs included.
+    here : int
+        Flights of this run.
+    what : str
+        What happened last, in words.
+    """
+
+    flown: int
+    flights: int
+    here: int
+    what: str = ""
+
+
+Told = Callable[[Progress], None]
+
+
+def run(campaign: Campaign, told: Told) -> dict[str, str]:
+    """Fly what is missing.
+
+    Parameters
+    ----------
+    campaign : Campaign
+    told : callable
+        Hears of progress.
+
+    Returns
+    -------
+    dict of str to str
+        Batches that could not be flown, and why.
+
+    Raises
+    ------
+    InputError
+        If the directory cannot be used, or the recipe asks for something no world can give.
+    NoSpaceError
+        If the device is full.
+    """
+    _make(campaign.root)
+    store = CampaignStore(campaign.root)
+    with DirectoryLock(campaign.root):
+        store.open(campaign.recipe)
+        missing = [
+            (point, pilot, batch)
+            for point, pilot, batch in campaign.everything()
+            if store.read(point, campaign.pilots[pilot].slug, batch) is None
+        ]
+        with RunLog(campaign.root) as log:
+            log.write(
+                "start",
+                missing=len(missing),
+                processes=campaign.processes,
+                machine=machine(),
+                pilots=[spec.to_json() for spec in campaign.pilots],
+            )
+            failed = _fly(campaign, missing, log, told)
+            log.write("end", failed=len(failed))
+    return failed
+
+
+def _fly(
+    campaign: Campaign, missing: list[tuple[str, int, Batch]], log: RunLog, told: Told
+) -> dict[str, str]:
+    total = campaign.flights * len(campaign.plans) * len(campaign.points) * len(campaign.pilots)
+    here, flown = 0, total - sum(batch.count for _, _, batch in missing)
+    failed: dict[str, str] = {}
+    told(Progress(flown, total, here))
+    with Pool(
+        WORKER,
+        _setup(campaign),
+        campaign.processes,
+        environment=WORKER_ENVIRONMENT,
+        share_from=SHARE_FROM,
+        silence_s=60.0 + 2.0 * campaign.recipe.loop.patience_s,
+    ) as pool:
+        for event in pool.run([_task(campaign, *entry) for entry in missing]):
+            if isinstance(event, Note):
+                told(Progress(flown, total, here, _words(event)))
+                continue
+            if isinstance(event, Done):
+                log.write("batch", batch=event.task.key, **event.value)
+                flown, here = flown + event.value["flights"], here + event.value["flights"]
+            elif isinstance(event, Strike | Failed):
+                log.write("strike", batch=event.task.key, **asdict(event.failure))
+            if isinstance(event, Failed):
+                _stop_if_hopeless(event, here)
+                failed[event.task.key] = event.failure.message
+            told(Progress(flown, total, here))
+    return failed
+
+
+def _setup(campaign: Campaign) -> dict[str, Any]:
+    return {
+        "root": str(campaign.root.resolve()),
+        "path": str(Path.cwd()),
+        "points": {name: recipe.model_dump(mode="json") for name, recipe in campaign.points.items()},
+        "pilots": [spec.to_json() for spec in campaign.pilots],
+    }
+
+
+def _task(campaign: Campaign, point: str, pilot: int, batch: Batch) -> Task:
+    key = f"{point}/{batch.map}/{campaign.pilots[pilot].slug}/{batch.name}"
+    payload = {"point": point, "pilot": pilot, "batch": asdict(batch)}
+    return Task(key, f"{batch.map}-{batch.world}", payload)
+
+
+def _words(note: Note) -> str:
+    point, map, pilot, _ = note.task.key.split("/")
+    where = map if point == BASE_POINT else f"{map} {point}"
+    if "flying" in note.data:
+        return f"{where}, {pilot}: {note.data['flying']} in the air"
+    return f"{where}, {pilot}: building world {note.data['stage'].rpartition(' ')[2]}"
+
+
+def _stop_if_hopeless(event: Failed, flown: int) -> None:
+    """A user's error would fail every batch; so would a bug that fails the very first."""
+    failure = event.failure
+    if failure.exit_code == NoSpaceError.exit_code:
+        raise NoSpaceError(failure.message)
+    if failure.exit_code == InputError.exit_code:
+        raise InputError(failure.message)
+    if flown == 0:
+        raise JobError(f"no flight can be flown: {failure.message}")
+
+
+def _make(root: Path) -> None:
+    try:
+        root.mkdir(parents=True, exist_ok=True)
+        check_output(root)
+    except FileExistsError:
+        raise InputError(f"--out {root}: is a file; name a directory") from None
+    except OSError as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"--out {root}: cannot be made: {error.strerror}; choose another --out") from None

@@ -1,0 +1,149 @@
+"""A campaign directory: made, opened again, grown. A batch is one file, there whole or not at all.
+
+DIR/campaign.json                                    the recipe, resolved; refuses another one
+DIR/flights/POINT/MAP/PILOT/00003.json               one batch flown by one pilot
+DIR/results.json  flights.csv  flights.parquet       derived from them
+DIR/index.html  replays/                             for people
+DIR/run.log.jsonl                                    when, where, at what cost; differs from run to run
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from scenegen.foundation import canonical
+from scenegen.foundation.atomic import make_directories, remove_partials, write_atomic
+from scenegen.foundation.errors import DatasetError, InputError
+from scenegen_datasets.lock import recipe_id
+from scenegen_datasets.recipe import SCENE_SEMANTICS
+from scenegen_datasets.store import RUN_LOG, WRITER_LOCK, differing_keys
+from scenegen_trainers.campaign.names import is_slug
+from scenegen_trainers.campaign.plan import Batch
+from scenegen_trainers.campaign.recipe import FlightRecipe
+from scenegen_trainers.campaign.record import BatchRecord
+
+SCHEMA = 1
+"""Version of all files of a campaign; a reader refuses what is newer than itself."""
+
+LOCK, FLIGHTS, RESULTS, CSV, PARQUET, PAGE, REPLAYS = (
+    "campaign.json", "flights", "results.json", "flights.csv", "flights.parquet", "index.html", "replays",
+)  # fmt: skip
+
+BASE_POINT = "base"
+"""Name of the one point of a campaign that sweeps nothing."""
+
+_OURS = (LOCK, FLIGHTS, RESULTS, CSV, PARQUET, PAGE, REPLAYS, RUN_LOG, WRITER_LOCK)
+
+
+class CampaignStore:
+    """The files of one campaign.
+
+    Parameters
+    ----------
+    root : Path
+        Must exist.
+    """
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+
+    def open(self, recipe: FlightRecipe) -> None:
+        """Make the directory a campaign's, or go on with the campaign in it. Call it with the lock held.
+
+        Raises
+        ------
+        InputError
+            If it holds something else, or a campaign of another recipe; names the keys that differ.
+        """
+        check_output(self.root)
+        wanted = _lock(recipe)
+        path = self.root / LOCK
+        if path.exists():
+            self._refuse_other(wanted)
+        else:
+            write_atomic(path, canonical.pretty(wanted))
+        for directory in (self.root, *(p for p in (self.root / FLIGHTS).rglob("*") if p.is_dir())):
+            remove_partials(directory)
+
+    def commit(self, point: str, pilot: str, batch: Batch, record: BatchRecord) -> None:
+        """Keep a batch: a kill loses it or keeps it, nothing between."""
+        path = self._path(point, pilot, batch)
+        make_directories(self.root, str(path.parent.relative_to(self.root)))
+        write_atomic(path, canonical.pretty({"schema": SCHEMA, **record.to_json()}))
+
+    def read(self, point: str, pilot: str, batch: Batch) -> BatchRecord | None:
+        """A batch that was flown, cut to the flights asked for; None if it was not, not wholly, or is damaged."""
+        path = self._path(point, pilot, batch)
+        if not path.is_file() or path.is_symlink():
+            return None
+        try:
+            value = canonical.read(path)
+            record = BatchRecord.from_json(value, str(path))
+        except DatasetError:
+            return None
+        if value.get("schema") != SCHEMA or record.world != batch.world:
+            return None
+        wanted = record.flights[: batch.count]
+        if [flight.flight for flight in wanted] != list(batch.flights):
+            return None
+        return BatchRecord(record.world, record.hour, record.weather, record.season, wanted)
+
+    def _path(self, point: str, pilot: str, batch: Batch) -> Path:
+        for word in (point, batch.map, pilot):
+            assert is_slug(word), word
+        return self.root / FLIGHTS / point / batch.map / pilot / f"{batch.name}.json"
+
+    def _refuse_other(self, wanted: dict[str, Any]) -> None:
+        held = canonical.read(self.root / LOCK)
+        if (
+            not isinstance(held, dict)
+            or held.get("schema") != SCHEMA
+            or not isinstance(held.get("recipe"), dict)
+        ):
+            raise InputError(f"{self.root / LOCK}: written by another version; choose another --out")
+        asked = canonical.parse(canonical.canonical(wanted["recipe"]), "recipe")
+        found = list(differing_keys(held["recipe"], asked))
+        if found:
+            raise InputError(
+                f"{self.root} holds flights of another recipe ({'; '.join(found[:8])}); "
+                "use the same one or another --out"
+            )
+        if held["recipe_id"] != wanted["recipe_id"]:
+            raise InputError(f"{self.root} was flown when this recipe meant other scenes; use another --out")
+
+
+def check_output(root: Path) -> None:
+    """Refuse a directory that is not empty and not a campaign, and symbolic links under our names.
+
+    Raises
+    ------
+    InputError
+        With what stands in the way.
+    """
+    if root.is_symlink() or not root.is_dir():
+        raise InputError(f"--out {root}: is not a directory; name one")
+    links = [name for name in _OURS if (root / name).is_symlink()]
+    if links:
+        raise InputError(f"{root / links[0]} is a symbolic link; a campaign is written into real files only")
+    strangers = sorted(p.name for p in root.iterdir() if p.name not in _OURS and not p.name.startswith("."))
+    if strangers and not (root / LOCK).exists():
+        raise InputError(
+            f"{root} is not empty and not a campaign (it holds {strangers[0]}); choose another --out"
+        )
+
+
+def _lock(recipe: FlightRecipe) -> dict[str, Any]:
+    plain = recipe.canonical()
+    return {"schema": SCHEMA, "recipe": plain, "recipe_id": recipe_id(plain, SCENE_SEMANTICS)}
+
+
+def batches_read(
+    store: CampaignStore, point: str, pilot: str, plan: tuple[Batch, ...]
+) -> Iterator[tuple[Batch, BatchRecord]]:
+    """The batches of a plan that were flown, in order."""
+    for batch in plan:
+        record = store.read(point, pilot, batch)
+        if record is not None:
+            yield batch, record
