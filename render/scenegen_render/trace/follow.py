@@ -40,6 +40,11 @@ class Followed:
     instance: UInt32[np.ndarray, "places"]
 
 
+_NOTHING = Followed(
+    np.zeros((0, 2), np.float32), np.zeros(0, bool), np.zeros(0, np.float32), np.zeros(0, np.uint32)
+)
+
+
 def follow(
     scenery: Scenery,
     camera: Camera,
@@ -61,6 +66,8 @@ def follow(
     times_s : (float, float)
         Their world times: where the movers are.
     """
+    if not len(places):
+        return _NOTHING
     mi, dr = backend.modules()
     plane = pixels.on_device(((places - np.asarray(camera.centre_px)) / camera.focal_px).astype(np.float32))
     now, then = (
