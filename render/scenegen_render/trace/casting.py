@@ -1,7 +1,7 @@
 """Which movers appear in a clip, and where in an image they can be.
 
 The first is chosen once by the clip's whole path, so that nothing ever pops up or vanishes. In closed loop nobody knows
-the path beforehand: there every instant has those that some camera sees.
+the path beforehand: there every instant has those that some ray can meet.
 """
 
 from __future__ import annotations
@@ -21,6 +21,8 @@ _SMALLEST_PX = 0.7
 """Movers that never look larger than that are left out."""
 _NEAR_M = 0.1
 """What lies closer to the camera's plane is not looked for; flights keep further away."""
+_SLACK_M = 0.05
+"""Around a mover's bounding sphere; far more than rounding."""
 _MARGIN_PX = 1.5
 """Around a box: sub-samples lie half a pixel off the centre, and rounding must never cost a ray."""
 
@@ -52,7 +54,14 @@ def choose(
     if not len(movers):
         return ()
     company = Company.of(movers)
-    seen, distance = _sight(company, company.poses_over(times_s), camera, poses)
+    middle = company.poses_over(times_s)[..., :3, 3]
+    middle[..., 2] += company.box[:, :, 2].mean(axis=1)
+    # Boxes need not be centred on the origin, and they pitch and roll: a little more than half the diagonal.
+    radius = 0.55 * np.linalg.norm(np.ptp(company.box, axis=1), axis=1) + 0.2
+    relative = np.einsum("pni,pij->pnj", middle - poses[:, None, :3, 3], poses[:, :3, :3])
+    distance = np.linalg.norm(relative, axis=-1)
+    large = camera.focal_px * 2.0 * radius > _SMALLEST_PX * distance
+    seen = _in_view(relative, radius, camera) & large
     nearest = np.where(seen, distance, np.inf).min(axis=0)
     order: Int64[np.ndarray, "movers"] = np.argsort(nearest, kind="stable")
     triangles = np.cumsum([len(movers[k].body.faces) for k in order])
@@ -60,37 +69,29 @@ def choose(
     return tuple(sorted(kept.tolist()))
 
 
-def in_view(
-    company: Company, time_s: float, camera: Camera, poses: Float64[np.ndarray, "views 4 4"]
-) -> Bool[np.ndarray, "views movers"]:
-    """Which movers come into which of several views at one time."""
-    return _sight(company, company.poses(time_s)[None], camera, poses)[0]
-
-
 def around(
-    company: Company,
-    time_s: float,
-    camera: Camera,
-    poses: Float64[np.ndarray, "views 4 4"],
-    who: Int64[np.ndarray, "some"] | None = None,
-) -> Bool[np.ndarray, "views rows columns"]:
+    company: Company, time_s: float, camera: Camera, poses: Float64[np.ndarray, "views 4 4"]
+) -> tuple[Bool[np.ndarray, "views rows columns"], Int64[np.ndarray, "some"]]:
     """Pixels whose rays can meet a mover at one time: rectangles around the projections of their boxes.
 
-    Parameters
-    ----------
-    who : int64 (some,), optional
-        Movers that count; by default all.
+    Returns
+    -------
+    bool (views, rows, columns)
+    int64 (some,)
+        The movers any of them can meet, increasing.
     """
     near = np.zeros((len(poses), camera.height_px, camera.width_px), bool)
     box, move = company.box, company.poses(time_s)
-    if who is not None:
-        box, move = box[who], move[who]
-    if not len(box):
-        return near
-    corner = np.stack([box[:, pick, range(3)] for pick in _CORNERS], axis=1)
-    world = np.einsum("nij,nkj->nki", move[:, :3, :3], corner) + move[:, None, :3, 3]
-    local = np.stack([((world - pose[:3, 3]) @ pose[:3, :3]) for pose in poses])
-    points, ahead = _before_the_camera(local.reshape(-1, 8, 3))
+    middle = np.einsum("nij,nj->ni", move[:, :3, :3], box.mean(axis=1)) + move[:, :3, 3]
+    relative = np.einsum("vni,vij->vnj", middle - poses[:, None, :3, 3], poses[:, :3, :3])
+    radius = 0.5 * np.linalg.norm(np.ptp(box, axis=1), axis=1) + _SLACK_M
+    view, mover = np.nonzero(_in_view(relative, radius, camera))
+    if not len(mover):
+        return near, mover
+    corner = np.stack([box[mover][:, pick, range(3)] for pick in _CORNERS], axis=1)
+    world = np.einsum("nij,nkj->nki", move[mover, :3, :3], corner) + move[mover, None, :3, 3]
+    local = np.einsum("nki,nij->nkj", world - poses[view, None, :3, 3], poses[view, :3, :3])
+    points, ahead = _before_the_camera(local)
     place = points[..., :2] / points[..., 2:] * camera.focal_px + camera.centre_px
     seen = ahead[..., None]
     low = np.where(seen, place, np.inf).min(axis=1) - _MARGIN_PX
@@ -98,12 +99,12 @@ def around(
     size = np.array([camera.width_px, camera.height_px])
     first = np.clip(np.floor(low), 0, size).astype(np.int64)
     last = np.clip(np.ceil(high), 0, size).astype(np.int64)
-    some = np.flatnonzero((first < last).all(axis=1))
-    for view, (left, top), (right, bottom) in zip(
-        (some // len(box)).tolist(), first[some].tolist(), last[some].tolist(), strict=True
+    met = (first < last).all(axis=1)
+    for k, (left, top), (right, bottom) in zip(
+        view[met].tolist(), first[met].tolist(), last[met].tolist(), strict=True
     ):
-        near[view, top:bottom, left:right] = True
-    return near
+        near[k, top:bottom, left:right] = True
+    return near, np.unique(mover[met])
 
 
 _CORNERS = np.array([[k >> 2 & 1, k >> 1 & 1, k & 1] for k in range(8)])
@@ -126,26 +127,6 @@ def _before_the_camera(
     points = np.concatenate([corner, cut], axis=1)
     points[..., 2] = np.where(ahead, points[..., 2], 1.0)
     return points, ahead
-
-
-def _sight(
-    company: Company,
-    move: Float64[np.ndarray, "times movers 4 4"],
-    camera: Camera,
-    poses: Float64[np.ndarray, "poses 4 4"],
-) -> tuple[Bool[np.ndarray, "poses movers"], Float64[np.ndarray, "poses movers"]]:
-    """Whether poses see the bounding spheres of movers, large enough to count, and how far they are [m].
-
-    Movers stand where they are at each pose's time, or all at one.
-    """
-    middle = move[..., :3, 3].copy()
-    middle[..., 2] += company.box[:, :, 2].mean(axis=1)
-    # Boxes need not be centred on the origin, and they pitch and roll: a little more than half the diagonal.
-    radius = 0.55 * np.linalg.norm(np.ptp(company.box, axis=1), axis=1) + 0.2
-    relative = np.einsum("pni,pij->pnj", middle - poses[:, None, :3, 3], poses[:, :3, :3])
-    distance = np.linalg.norm(relative, axis=-1)
-    large = camera.focal_px * 2.0 * radius > _SMALLEST_PX * distance
-    return _in_view(relative, radius, camera) & large, distance
 
 
 def _in_view(

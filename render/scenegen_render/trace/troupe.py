@@ -17,7 +17,7 @@ from jaxtyping import Float32, Float64, UInt32
 from scenegen.movers.company import Company
 from scenegen_render import backend
 from scenegen_render.camera import Camera
-from scenegen_render.trace.casting import around, in_view
+from scenegen_render.trace.casting import around
 from scenegen_render.trace.pose import Pose
 
 _UNSEEN = 2
@@ -62,8 +62,8 @@ class View:
 class Troupe:
     """Chosen movers of a world.
 
-    Those that no camera sees at an instant may be left out of its scene: their vertices are infinite there, which
-    Embree passes over, so that tables and kernels stay what they are.
+    Those that no camera sees at an instant may be left out of its scene: their vertices are NaN there, which
+    ray tracers take for "no triangle", so that tables and kernels stay what they are.
 
     Parameters
     ----------
@@ -101,8 +101,8 @@ class Troupe:
         for seen_by, seen_from, view in stage.views:
             if seen_by == camera and np.array_equal(seen_from, pose):
                 return view
-        near = backend.upload(around(self.company, time_s, camera, pose[None]))
-        view = View(stage.instant, near)
+        near, _ = around(self.company, time_s, camera, pose[None])
+        view = View(stage.instant, backend.upload(near))
         stage.views = [*stage.views[1 - _KEPT :], (camera, pose, view)]
         return view
 
@@ -115,12 +115,11 @@ class Troupe:
         ----------
         mirrors : bool
             Whether mirrors are looked into, which show what no camera sees. If not, only those are there that some
-            camera sees: a step costs what is near, not what the world has.
+            ray can meet: a step costs what is near, not what the world has.
         """
-        who = np.flatnonzero(in_view(self.company, time_s, camera, poses).any(axis=0))
-        near = backend.upload(around(self.company, time_s, camera, poses, who))
+        near, who = around(self.company, time_s, camera, poses)
         stage = self._stage(time_s, None if mirrors else tuple(who.tolist()))
-        return View(stage.instant, near)
+        return View(stage.instant, backend.upload(near))
 
     def _stage(self, time_s: float, who: tuple[int, ...] | None = None) -> _Stage:
         """The scene of an instant, with all movers or only some."""

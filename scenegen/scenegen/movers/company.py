@@ -112,8 +112,8 @@ class Company:
         return world
 
     def vertices_of(self, who: Int64[np.ndarray, "some"], time_s: float) -> Float64[np.ndarray, "vertices 3"]:
-        """The same for some movers, at a cost that grows with those only; all other vertices are infinite."""
-        world = np.full(self.body.vertices.shape, np.inf)
+        """The same for some movers, at a cost that grows with those only; all other vertices are NaN."""
+        world = np.full(self.body.vertices.shape, np.nan)
         state = self.timetable.at(time_s)[who]
         for k, own, pose in zip(who.tolist(), state, matrices(state), strict=True):
             first, last, gait = self.first[k], self.first[k + 1], self.movers[k].gait

@@ -188,7 +188,7 @@ def test_pixels_without_movers_are_those_of_an_empty_street(
             Company.of(peopled_loaded.world.movers),
             _grown(with_movers.semantic == Semantic.WINDOW),
         )
-        far = ~around(company, times[0], CAMERA, pose[None])[0] & ~mirrors
+        far = ~around(company, times[0], CAMERA, pose[None])[0][0] & ~mirrors
         same = with_movers.radiance == without.radiance
         assert far.sum() > 2_000 and same[far].all()
         assert same[~_grown(~still) & ~mirrors].mean() > 0.999
