@@ -12,6 +12,7 @@ from scenegen.world import World
 from scenegen_flythrough.boxtree import parts
 from scenegen_flythrough.clearance import MeshProximity
 from scenegen_flythrough.surface_samples import inner_points
+from scenegen_flythrough.traffic import reaches_of
 
 _LAYER_M = 2.0  # 64 layers of 2 m: heights of 0 to 128 m above ground in one 64-bit word
 _GROUND_M = 0.5  # what reaches no higher above the ground is ground
@@ -31,6 +32,8 @@ class Airspace:
         The exact mesh.
     cell_m : float
         Cell of the coarse map [m].
+    reaches : float64 (movers, 2, 3)
+        Boxes that the world's movers never leave.
     """
 
     def __init__(self, world: World, proximity: MeshProximity | None = None) -> None:
@@ -42,6 +45,8 @@ class Airspace:
         self.cell_m = max(1.0, float(np.sqrt(size[0] * size[1] / _MAX_CELLS)))
         columns, rows = np.ceil(size / self.cell_m).astype(int)
         self._layers = self._occupied_layers(int(rows), int(columns))
+        self._wide = _widened(self._layers)
+        self.reaches = reaches_of(world.movers)
         self.ceiling_m = float(world.mesh.vertices[:, 2].max(initial=0.0))
 
     def room(self, height_m: float, margin_m: float) -> UInt8[np.ndarray, "rows columns"]:
@@ -59,12 +64,31 @@ class Airspace:
             room += ~blocked
         return np.asarray(room)
 
+    def tops(self, xy: Float64[np.ndarray, "*points 2"]) -> Float64[np.ndarray, "*points"]:
+        """Height above ground [m] below which the coarse map has something within a cell or so; 0 outside it."""
+        column, row = self._cell(xy)
+        inside = self._on_map(column, row)
+        layers = self._wide[np.where(inside, row, 0), np.where(inside, column, 0)]
+        # The exponent of a power of two: rounding up to the next one is a layer too high, never too low.
+        highest = np.where(layers > 0, np.frexp(layers.astype(np.float64))[1], 0)
+        return np.where(inside, _LAYER_M * highest, 0.0)
+
+    def blocked(self, points: Float64[np.ndarray, "*points 3"]) -> Bool[np.ndarray, "*points"]:
+        """Where the coarse map has something within a cell or two, or ends."""
+        column, row = self._cell(points[..., :2])
+        inside = self._on_map(column, row)
+        ground = self.world.ground.at(points[..., :2].reshape(-1, 2)).reshape(points.shape[:-1])
+        above = points[..., 2] - ground
+        layer = np.clip((above / _LAYER_M).astype(np.int64), 0, 63).astype(np.uint64)
+        taken = self._wide[np.where(inside, row, 0), np.where(inside, column, 0)] >> layer & np.uint64(1)
+        return np.asarray(~inside | (above < _GROUND_M) | (taken > 0))
+
     def look_up(
         self, room: UInt8[np.ndarray, "rows columns"], xy: Float64[np.ndarray, "*points 2"]
     ) -> Int64[np.ndarray, "*points"]:
         """Room at points; 0 outside the flight box."""
         column, row = self._cell(xy)
-        inside = (column >= 0) & (column < room.shape[1]) & (row >= 0) & (row < room.shape[0])
+        inside = self._on_map(column, row)
         value = room[np.where(inside, row, 0), np.where(inside, column, 0)].astype(np.int64)
         return np.where(inside, value, 0)
 
@@ -84,6 +108,12 @@ class Airspace:
         above = points.copy()
         above[:, 2] = np.maximum(points[:, 2], self.ceiling_m + clearance_m + 1.0)
         return ~self.proximity.sweep(points, above, clearance_m).touches
+
+    def _on_map(
+        self, column: Int64[np.ndarray, "*points"], row: Int64[np.ndarray, "*points"]
+    ) -> Bool[np.ndarray, "*points"]:
+        rows, columns = self._layers.shape
+        return np.asarray((column >= 0) & (column < columns) & (row >= 0) & (row < rows))
 
     def _cell(
         self, xy: Float64[np.ndarray, "*points 2"]
@@ -129,4 +159,16 @@ def _grown(blocked: Bool[np.ndarray, "rows columns"], *, square: bool) -> Bool[n
     base = out.copy() if square else blocked
     out[:, 1:] |= base[:, :-1]
     out[:, :-1] |= base[:, 1:]
+    return out
+
+
+def _widened(layers: UInt64[np.ndarray, "rows columns"]) -> UInt64[np.ndarray, "rows columns"]:
+    """Everything grown by a cell to all sides and by half a layer's worth up and down: one layer each."""
+    out = layers | layers << np.uint64(1) | layers >> np.uint64(1)
+    for axis in (0, 1):
+        grown = out.copy()
+        before, after = (slice(None),) * axis + (slice(1, None),), (slice(None),) * axis + (slice(None, -1),)
+        grown[before] |= out[after]
+        grown[after] |= out[before]
+        out = grown
     return out

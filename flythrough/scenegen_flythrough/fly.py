@@ -1,39 +1,34 @@
-"""One flight through a world: drawn, steered on the coarse map, then proven against the exact mesh."""
+"""One flight through a world: drawn by its style, flown by a quadrotor in the wind, proven against the exact mesh."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
-from jaxtyping import Bool, Float64
+from jaxtyping import Float64
 
 from scenegen.foundation.errors import InputError, RejectedDrawError
 from scenegen.movers.clock import Clock
 from scenegen.world import World
 from scenegen_flythrough.airspace import Airspace
-from scenegen_flythrough.attitude import camera_poses
+from scenegen_flythrough.flown import Flown, trajectory
 from scenegen_flythrough.knobs import FlightKnobs
-from scenegen_flythrough.steering import Intent, fly_batch
-from scenegen_flythrough.traffic import keeps_clear
+from scenegen_flythrough.proof import REASONS, in_range
+from scenegen_flythrough.quadrotor.curve import Curve
+from scenegen_flythrough.quadrotor.pilotage import Wind, pilot
+from scenegen_flythrough.route import Route
+from scenegen_flythrough.styles.recorded import Recorded
+from scenegen_flythrough.styles.registry import DRAWN
+from scenegen_flythrough.styles.task import Task, between
 from scenegen_flythrough.trajectory import Trajectory
 
-_BATCH = 32  # paths tried together
 _PROVEN_TOGETHER = 4
-_BATCHES_PER_INTENT = 4
-_VIEW_M = 40.0  # how much of the world must still lie ahead of every pose
-
+_PATIENCE = 256
+"""Draws of one style before the next one of the recipe is tried."""
 _FROM_ZERO = Clock()
-
-
-@dataclass
-class _Rejections:
-    """Why paths were turned down, for the message of a flight that is given up."""
-
-    outside: int = 0
-    blocked: int = 0
-    enclosed: int = 0
-    met: int = 0
 
 
 def fly(
@@ -44,10 +39,11 @@ def fly(
     airspace: Airspace,
     clock: Clock = _FROM_ZERO,
 ) -> Trajectory:
-    """Draw a smooth collision-free flight.
+    """Draw a smooth collision-free flight that a quadrotor can fly.
 
-    Speed, height and camera angle are drawn first; up to 128 paths are tried with them before they are drawn anew, so
-    that low flights between houses are as likely as the easy ones above the roofs.
+    The style is drawn first, then speed, height and camera angle, and many paths are tried with them before they are
+    drawn anew, so that low flights between houses are as likely as the easy ones above the roofs. After 256 draws in
+    vain the next style has its turn.
 
     Parameters
     ----------
@@ -65,136 +61,150 @@ def fly(
     Returns
     -------
     Trajectory
-        Its capsules of radius `knobs.clearance_m` between successive poses touch nothing, no mover's box comes closer
-        either, and at least one pose is connected to the open sky, so that no pose lies inside anything.
+        A sphere of radius `knobs.clearance_m` moved along its way touches nothing, no mover's box comes closer either,
+        and at least one place is connected to the open sky, so that none lies inside anything. At no instant does it
+        exceed `knobs.limits`.
 
     Raises
     ------
     RejectedDrawError
         `knobs.max_draws` paths were rejected.
+    InputError
+        A recording cannot be flown as it is.
     """
     if frames < 1:
         raise InputError(f"a clip needs at least one frame, not {frames}; raise the number of frames")
     if airspace.world is not world:
         raise AssertionError("the airspace belongs to another world")
-    rejected, why = 0, _Rejections()
-    while rejected < knobs.max_draws:
-        intent_rng, *batch_rngs = rng.spawn(1 + _BATCHES_PER_INTENT)
-        intent = _draw_intent(knobs, intent_rng)
-        room = airspace.room(intent.height_m, max(knobs.clearance_m, 0.1 * intent.height_m) + 1.0)
-        for batch_rng in batch_rngs[: math.ceil((knobs.max_draws - rejected) / _BATCH)]:
-            left = min(_BATCH, knobs.max_draws - rejected)
-            paths = fly_batch(airspace, room, knobs, intent, (_BATCH, frames + 2), batch_rng)[:left]
-            index = _first_proven(airspace, knobs, intent, paths, clock, why)
-            if index is not None:
-                return _trajectory(airspace, knobs, intent, paths[index], rejected + index)
-            rejected += left
-            why.blocked += left - len(paths)  # no free place to start from at this height
-    raise RejectedDrawError(_given_up(world, knobs, frames, why))
+    (order_rng,) = rng.spawn(1)
+    entries = [knobs.styles[k] for k in order_rng.permutation(len(knobs.styles))]
+    search = _Search(airspace, knobs, frames, clock)
+    styles = list(dict.fromkeys(entries))
+    turn = 0
+    while search.left > 0:
+        style, tried = styles[turn % len(styles)], search.rejected
+        turn += 1
+        while search.left > 0 and search.rejected - tried < _PATIENCE:
+            (round_rng,) = rng.spawn(1)
+            found = search.once(style, round_rng)
+            if found is not None:
+                return found
+    raise RejectedDrawError(search.given_up())
 
 
-def _draw_intent(knobs: FlightKnobs, rng: np.random.Generator) -> Intent:
-    speed, height, pitch = (child.uniform() for child in rng.spawn(3))
-    return Intent(
-        speed_mps=_between(knobs.speed_mps, speed),
-        height_m=_between(knobs.height_m, height),
-        mount_pitch_deg=_between(knobs.pitch_deg, pitch),
-    )
+class _Search:
+    """Looks for one flight and counts what it turns down."""
 
+    def __init__(self, airspace: Airspace, knobs: FlightKnobs, frames: int, clock: Clock) -> None:
+        self._airspace, self._knobs, self._frames, self._clock = airspace, knobs, frames, clock
+        lead_m = 0.5 * knobs.speed_mps[1] + 2.0  # the spline's own ends
+        self._task = Task(airspace, knobs, (frames + 1) * knobs.spacing_m + lead_m)
+        self._why: Counter[str] = Counter()
 
-def _between(span: tuple[float, float], share: float) -> float:
-    return span[0] + share * (span[1] - span[0])
+    @property
+    def rejected(self) -> int:
+        """Draws so far."""
+        return self._why.total()
 
+    @property
+    def left(self) -> int:
+        """Draws that are still allowed."""
+        return self._knobs.max_draws - self.rejected
 
-def _first_proven(
-    airspace: Airspace,
-    knobs: FlightKnobs,
-    intent: Intent,
-    paths: Float64[np.ndarray, "batch poses 3"],
-    clock: Clock,
-    why: _Rejections,
-) -> int | None:
-    """Index of the first path that holds everything, as if they had been tried one after the other."""
-    inside = _inside(airspace, knobs, paths)
-    why.outside += int((~inside).sum())
-    candidates = np.flatnonzero(inside)
-    for first in range(0, len(candidates), _PROVEN_TOGETHER):
-        group = candidates[first : first + _PROVEN_TOGETHER]
-        free = _free(airspace, knobs, paths[group])
-        why.blocked += int((~free).sum())
-        for index in group[free].tolist():
-            if not airspace.open_to_sky(paths[index, ::8], knobs.clearance_m).any():
-                why.enclosed += 1
-            elif not keeps_clear(
-                airspace.world.movers,
-                clock,
-                paths[index],
-                _times(paths.shape[1], knobs, intent),
-                knobs.clearance_m,
-            ):
-                why.met += 1
+    def once(self, style: str, rng: np.random.Generator) -> Trajectory | None:
+        """All draws of one intent; the first that holds everything."""
+        draw_rng, wind_rng, flown_rng = rng.spawn(3)
+        if style == "recorded":
+            candidates = self._recorded(draw_rng)
+        else:
+            wind_mps = between(self._knobs.wind_mps, wind_rng)
+            candidates = self._drawn(style, wind_mps, draw_rng)
+        for flown in candidates:
+            made = trajectory(self._airspace, self._knobs, self._frames, flown, self._clock, flown_rng)
+            if isinstance(made, str):
+                self._why[made] += 1
+                if self.left <= 0:
+                    return None
+                continue
+            reasons = tuple(sorted((key, n) for key, n in self._why.items() if n))
+            return replace(made, style=style, rejected=self.rejected, rejections=reasons)
+        return None
+
+    def _drawn(self, style: str, wind_mps: float, rng: np.random.Generator) -> Iterator[Flown]:
+        """Motions of a style's routes, those left out that reach something already as drawn."""
+        draw_rng, gust_rng = rng.spawn(2)
+        for batch in DRAWN[style].draw(self._task, draw_rng):
+            self._why["hopeless"] += min(batch.hopeless, self.left)
+            routes = batch.routes[: self.left]
+            rngs = gust_rng.spawn(len(routes))
+            for first in range(0, len(routes), _PROVEN_TOGETHER):
+                group = routes[first : first + _PROVEN_TOGETHER]
+                for k, why in enumerate(self._objections(group)):
+                    if why is not None:
+                        self._why[why] += 1
+                        continue
+                    flown = self._piloted(group[k], wind_mps, rngs[first + k])
+                    if flown is not None:
+                        yield flown
+            if self.left <= 0:
+                return
+
+    def _piloted(self, route: Route, wind_mps: float, rng: np.random.Generator) -> Flown | None:
+        knobs, middle = self._knobs, route.points.mean(axis=0)
+        height_m = float(middle[2] - self._airspace.world.ground.at(middle[None, :2])[0])
+        wind_rng, gust_rng = rng.spawn(2)
+        wind = Wind.draw(wind_mps, height_m, wind_rng)
+        motion = pilot(route, wind, knobs.limits, knobs.bank_deg, gust_rng)
+        if motion is None:
+            self._why["limits"] += 1
+            return None
+        mean = float(wind.mean_mps[0]), float(wind.mean_mps[1])
+        return Flown(motion, route.pitch_deg, at_end=route.at_end, wind_mps=mean)
+
+    def _objections(self, routes: list[Route]) -> list[str | None]:
+        """Why routes cannot be flown as drawn, if so; what the wind does to them is proven later."""
+        places = [self._shown(route) for route in routes]
+        inside = [bool(in_range(self._airspace, self._knobs, place[None])[0]) for place in places]
+        why: list[str | None] = [None if good else "outside" for good in inside]
+        kept = np.flatnonzero(inside)
+        if len(kept) > 0:
+            starts = np.concatenate([places[k][:-1] for k in kept])
+            ends = np.concatenate([places[k][1:] for k in kept])
+            owner = np.repeat(kept, [len(places[k]) - 1 for k in kept])
+            touches = self._airspace.proximity.sweep(starts, ends, self._knobs.clearance_m).touches
+            for k in np.unique(owner[touches]).tolist():
+                why[k] = "blocked"
+        return why
+
+    def _shown(self, route: Route) -> Float64[np.ndarray, "places 3"]:
+        """Places along what the clip surely shows of a route: not its ends, where the motion begins and runs out."""
+        curve = Curve.of(route.points)
+        need_m, ends_m = (self._frames + 1) * self._knobs.spacing_m, 0.2 * route.speed_mps
+        low = curve.length_m - need_m if route.at_end else ends_m
+        high = curve.length_m - ends_m if route.at_end else need_m
+        s = np.linspace(max(low, 0.0), max(min(high, curve.length_m), low), max(math.ceil(need_m), 2))
+        return curve.spline.at(np.clip(curve.index_at(s), 0.0, curve.u[-1]))
+
+    def _recorded(self, rng: np.random.Generator) -> Iterator[Flown]:
+        for flown in Recorded.of(self._knobs).draw(self._task, self._frames, rng):
+            if isinstance(flown, str):
+                self._why[flown] += 1
             else:
-                return int(index)
-    return None
+                yield flown
+            if self.left <= 0:
+                return
 
-
-def _inside(
-    airspace: Airspace, knobs: FlightKnobs, paths: Float64[np.ndarray, "batch poses 3"]
-) -> Bool[np.ndarray, "batch"]:
-    """Which paths stay in the flight box and in the height range, and still have world ahead to look at."""
-    ground = airspace.world.ground
-    height = paths[:, :, 2] - ground.at(paths[:, :, :2].reshape(-1, 2)).reshape(paths.shape[:2])
-    low, high = knobs.height_m[0] - knobs.height_slack_m, knobs.height_m[1] + knobs.height_slack_m
-    good = ((height >= low) & (height <= high)).all(axis=1)
-    good &= ((paths >= airspace.low) & (paths <= airspace.high)).all(axis=(1, 2))
-    ahead = paths[:, 1:] - paths[:, :-1]
-    view_m = min(_VIEW_M, 0.15 * float((airspace.high - airspace.low)[:2].min()))
-    seen = paths[:, 1:, :2] + ahead[:, :, :2] * (view_m / knobs.spacing_m)
-    rows, columns = ground.height_m.shape
-    low_corner = np.asarray(ground.origin_m)
-    high_corner = low_corner + np.array([columns - 1, rows - 1]) * ground.cell_m
-    good &= ((seen >= low_corner) & (seen <= high_corner)).all(axis=(1, 2))
-    return np.asarray(good)
-
-
-def _free(
-    airspace: Airspace, knobs: FlightKnobs, paths: Float64[np.ndarray, "group poses 3"]
-) -> Bool[np.ndarray, "group"]:
-    """Which paths keep their clearance to the exact mesh, whole capsules from pose to pose."""
-    starts, ends = paths[:, :-1].reshape(-1, 3), paths[:, 1:].reshape(-1, 3)
-    touches = airspace.proximity.sweep(starts, ends, knobs.clearance_m).touches
-    return np.asarray(~touches.reshape(len(paths), -1).any(axis=1))
-
-
-def _times(poses: int, knobs: FlightKnobs, intent: Intent) -> Float64[np.ndarray, "poses"]:
-    """Clip time of each pose, zero at the second."""
-    return (np.arange(poses) - 1.0) * (knobs.spacing_m / intent.speed_mps)
-
-
-def _trajectory(
-    airspace: Airspace,
-    knobs: FlightKnobs,
-    intent: Intent,
-    path: Float64[np.ndarray, "poses 3"],
-    rejected: int,
-) -> Trajectory:
-    closest = airspace.proximity.sweep(path[:-1], path[1:]).distance_m
-    return Trajectory(
-        world_from_camera=camera_poses(path, intent.speed_mps, knobs.bank_deg, intent.mount_pitch_deg),
-        time_s=_times(len(path), knobs, intent),
-        speed_mps=intent.speed_mps,
-        clearance_m=float(closest.min()),
-        rejected=rejected,
-    )
-
-
-def _given_up(world: World, knobs: FlightKnobs, frames: int, why: _Rejections) -> str:
-    length = math.ceil((frames + 1) * knobs.spacing_m)
-    reasons = (
-        f"{why.outside} left the flight box or the height range, {why.blocked} came closer than clearance_m "
-        f"{knobs.clearance_m:g}, {why.met} would have met something that moves, {why.enclosed} had no open sky"
-    )
-    return (
-        f"no free flight of {length} m in this {world.map} world after {knobs.max_draws} draws ({reasons}); "
-        "ask for a shorter clip, less clearance, other heights or a slower speed"
-    )
+    def given_up(self) -> str:
+        """One line: what was looked for, and why nothing was found."""
+        knobs = self._knobs
+        length = math.ceil((self._frames + 1) * knobs.spacing_m)
+        reasons = ", ".join(f"{n} {REASONS[key]}" for key, n in self._why.most_common() if n)
+        if set(knobs.styles) == {"recorded"}:
+            return (
+                f"{knobs.recorded.file}: no stretch of {length} m of this recording can be flown in this "
+                f"{self._airspace.world.map} world ({reasons}); move it, or try recorded.place anywhere"
+            )
+        return (
+            f"no free flight of {length} m in this {self._airspace.world.map} world after {self.rejected} draws "
+            f"({reasons}); ask for a shorter clip, less clearance, other heights, a slower speed or other styles"
+        )

@@ -1,7 +1,7 @@
 """Candidate paths: a drone that wanders, looks ahead on the coarse map, and turns towards the free side.
 
-All candidates of a batch are flown together, one step of `spacing_m` at a time. The path is a chain of chords of
-exactly that length; curvature and climb change continuously, so it is smooth in the second derivative.
+All candidates of a batch are drawn together, one step at a time. The path is a chain of chords of exactly that length;
+curvature and climb change continuously, so it is smooth in the second derivative.
 """
 
 from __future__ import annotations
@@ -14,9 +14,11 @@ from jaxtyping import Float64, UInt8
 
 from scenegen_flythrough.airspace import ROOM_CELLS, Airspace
 from scenegen_flythrough.knobs import FlightKnobs
+from scenegen_flythrough.quadrotor.limits import GRAVITY_MPS2
 
-GRAVITY_MPS2 = 9.80665
 _OFFSETS_RAD = np.radians([-60.0, -40.0, -24.0, -12.0, 0.0, 12.0, 24.0, 40.0, 60.0])
+_BEND_SPEED = 0.75
+"""Share of the cruise speed that tight bends are meant to be flown at."""
 _LOOK_SHARES = np.array([0.12, 0.25, 0.4, 0.55, 0.75, 1.0])
 
 
@@ -50,61 +52,99 @@ class Agility:
         Largest change of curvature per metre [1/m^2].
     climb : float
         Largest slope angle [rad].
+    step : float
+        Length of a chord [m].
     """
 
     curvature: float
     onset: float
     climb: float
+    step: float
 
     @classmethod
-    def of(cls, knobs: FlightKnobs, speed_mps: float) -> Agility:
-        """Curvature from turn radius and from bank: v^2 k = g tan(bank); ramps take 0.7 s, or 4 m when slow."""
-        banked = GRAVITY_MPS2 * math.tan(math.radians(0.9 * knobs.bank_deg)) / speed_mps**2
-        curvature = min(1.0 / knobs.turn_radius_m, banked, 0.35 / knobs.spacing_m)
-        ramp = max(0.7 * speed_mps, 4.0, 2.0 * knobs.spacing_m)
-        return cls(curvature, curvature / ramp, math.radians(knobs.climb_deg))
+    def of(cls, knobs: FlightKnobs, cruise_mps: float, step_m: float) -> Agility:
+        """Curvature from turn radius and bank (v^2 k = g tan(bank)) at the speed of bends; ramps of 0.7 s or 4 m."""
+        speed = _BEND_SPEED * cruise_mps
+        banked = GRAVITY_MPS2 * math.tan(math.radians(0.9 * knobs.bank_deg)) / speed**2
+        curvature = min(1.0 / knobs.turn_radius_m, banked, 0.35 / step_m)
+        ramp = max(0.7 * speed, 4.0, 2.0 * step_m)
+        return cls(curvature, curvature / ramp, math.radians(knobs.climb_deg), step_m)
 
 
-def fly_batch(
+def free_starts(
+    airspace: Airspace,
+    room: UInt8[np.ndarray, "rows columns"],
+    knobs: FlightKnobs,
+    count: int,
+    rng: np.random.Generator,
+) -> Float64[np.ndarray, "starts 2"]:
+    """Free places of the coarse map, all equally likely; none where it has none at this height."""
+    free = np.flatnonzero(room.ravel() > _needed(airspace, knobs))
+    if len(free) == 0:
+        return np.zeros((0, 2))
+    return airspace.centre(free[rng.integers(len(free), size=count)])
+
+
+def wander(
     airspace: Airspace,
     room: UInt8[np.ndarray, "rows columns"],
     knobs: FlightKnobs,
     intent: Intent,
-    shape: tuple[int, int],
+    start: tuple[Float64[np.ndarray, "batch 2"], Float64[np.ndarray, "batch"]] | None,
+    shape: tuple[int, int, float],
     rng: np.random.Generator,
-) -> Float64[np.ndarray, "batch poses 3"]:
-    """Fly `shape` = (batch, poses) candidate paths from free places of the coarse map.
+) -> Float64[np.ndarray, "paths points 3"]:
+    """Draw paths that wander through the free air.
 
-    Returns an empty batch where the map has no free place at this height.
+    Parameters
+    ----------
+    airspace : Airspace
+    room : uint8 (rows, columns)
+        `Airspace.room` at the cruise height.
+    knobs : FlightKnobs
+    intent : Intent
+    start : (float64 (batch, 2), float64 (batch,)) or None
+        Places and headings to begin with; None: any free place, with a far view ahead.
+    shape : (int, int, float)
+        Paths, points of each, and metres between two.
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    float64 (paths, points, 3)
+        Empty where the map has no free place at this height.
     """
-    batch, poses = shape
+    batch, points, step_m = shape
     starts_rng, heading_rng, wander_rng, sway_rng = rng.spawn(4)
-    free = np.flatnonzero(room.ravel() > _needed(airspace, knobs))
-    if len(free) == 0:
-        return np.zeros((0, poses, 3))
-    xy = airspace.centre(free[starts_rng.integers(len(free), size=batch)])
-    agility = Agility.of(knobs, intent.speed_mps)
+    if start is None:
+        xy = free_starts(airspace, room, knobs, batch, starts_rng)
+        heading = _open_heading(airspace, room, xy, heading_rng)
+    else:
+        xy, heading = start
+    batch = len(xy)
+    if batch == 0:
+        return np.zeros((0, points, 3))
+    agility = Agility.of(knobs, intent.speed_mps, step_m)
     # Far enough to see a turn coming at this curvature, not so far that every street ends in a wall.
     reach = min(max(4.0 / agility.curvature, 1.5 * intent.speed_mps, 20.0), 60.0) * _LOOK_SHARES
-    heading = _open_heading(airspace, room, xy, heading_rng)
-    wander = _wander(wander_rng, batch, poses, knobs.spacing_m, agility.curvature)
-    target = intent.height_m + _sway(sway_rng, batch, poses, knobs, intent.height_m)
-    return _integrate(airspace, room, knobs, agility, reach, xy, heading, wander, target)
+    along = np.arange(points) * step_m
+    lean = _wander(wander_rng, batch, along, agility.curvature)
+    target = intent.height_m + _sway(sway_rng, batch, along, knobs, intent.height_m)
+    return _integrate(airspace, room, agility, reach, xy, heading, lean, target)
 
 
 def _integrate(
     airspace: Airspace,
     room: UInt8[np.ndarray, "rows columns"],
-    knobs: FlightKnobs,
     agility: Agility,
     reach: Float64[np.ndarray, "looks"],
     xy: Float64[np.ndarray, "batch 2"],
     heading: Float64[np.ndarray, "batch"],
-    wander: Float64[np.ndarray, "batch poses"],
+    lean: Float64[np.ndarray, "batch poses"],
     target: Float64[np.ndarray, "batch poses"],
 ) -> Float64[np.ndarray, "batch poses 3"]:
-    step, ground = knobs.spacing_m, airspace.world.ground
-    batch, poses = wander.shape
+    step, ground = agility.step, airspace.world.ground
+    batch, poses = lean.shape
     path = np.empty((batch, poses, 3))
     path[:, 0, :2], path[:, 0, 2] = xy, ground.at(xy) + target[:, 0]
     curvature, slope, slope_rate = (np.zeros(batch) for _ in range(3))
@@ -112,8 +152,8 @@ def _integrate(
     ahead_m = max(2.0 * step, 6.0)
     for k in range(poses - 1):
         here = path[:, k]
-        turn = _best_turn(airspace, room, here[:, :2], heading, reach, wander[:, k] / agility.curvature)
-        wanted = np.clip(2.0 * turn / (0.4 * reach[-1]) + wander[:, k], -agility.curvature, agility.curvature)
+        turn = _best_turn(airspace, room, here[:, :2], heading, reach, lean[:, k] / agility.curvature)
+        wanted = np.clip(2.0 * turn / (0.4 * reach[-1]) + lean[:, k], -agility.curvature, agility.curvature)
         curvature = curvature + np.clip(wanted - curvature, -agility.onset * step, agility.onset * step)
         flat = np.stack([np.cos(heading), np.sin(heading)], axis=1)
         error = ground.at(here[:, :2] + ahead_m * flat) + target[:, k] - here[:, 2]
@@ -179,10 +219,9 @@ def _open_heading(
 
 
 def _wander(
-    rng: np.random.Generator, batch: int, poses: int, spacing_m: float, curvature: float
-) -> Float64[np.ndarray, "batch poses"]:
+    rng: np.random.Generator, batch: int, along: Float64[np.ndarray, "points"], curvature: float
+) -> Float64[np.ndarray, "batch points"]:
     """Random curvature [1/m]: two slow sines per path, some paths nearly straight, some always turning."""
-    along = np.arange(poses) * spacing_m
     period = rng.uniform(30.0, 120.0, (batch, 2, 1))
     phase = rng.uniform(0.0, 2 * np.pi, (batch, 2, 1))
     strength = 0.35 * curvature * rng.random((batch, 2, 1)) ** 2
@@ -190,10 +229,13 @@ def _wander(
 
 
 def _sway(
-    rng: np.random.Generator, batch: int, poses: int, knobs: FlightKnobs, height_m: float
-) -> Float64[np.ndarray, "batch poses"]:
+    rng: np.random.Generator,
+    batch: int,
+    along: Float64[np.ndarray, "points"],
+    knobs: FlightKnobs,
+    height_m: float,
+) -> Float64[np.ndarray, "batch points"]:
     """Slow change of the wanted height [m], up to a fifth of it, kept inside the knob's range."""
-    along = np.arange(poses) * knobs.spacing_m
     amplitude = 0.2 * height_m * rng.random((batch, 1)) ** 2
     wave = np.sin(
         2 * np.pi * along / rng.uniform(60.0, 200.0, (batch, 1)) + rng.uniform(0, 2 * np.pi, (batch, 1))

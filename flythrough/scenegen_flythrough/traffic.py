@@ -19,6 +19,7 @@ def keeps_clear(
     path: Float64[np.ndarray, "poses 3"],
     time_s: Float64[np.ndarray, "poses"],
     clearance_m: float,
+    reaches: Float64[np.ndarray, "movers 2 3"] | None = None,
 ) -> bool:
     """Whether a path never comes closer to the box around any mover than the clearance.
 
@@ -35,8 +36,13 @@ def keeps_clear(
     time_s : float64 (poses,)
         Clip time of each pose.
     clearance_m : float
+    reaches : float64 (movers, 2, 3), optional
+        `reaches_of` the movers, where it is known already.
     """
-    near = _near(movers, path, clearance_m)
+    reaches = reaches_of(movers) if reaches is None else reaches
+    low, high = path.min(axis=0) - clearance_m, path.max(axis=0) + clearance_m
+    meets = ((reaches[:, 0] <= high) & (reaches[:, 1] >= low)).all(axis=1)
+    near = [movers[k] for k in np.flatnonzero(meets)]
     if not near:
         return True
     company = Company.of(near)
@@ -52,12 +58,10 @@ def keeps_clear(
     return bool((closest >= clearance_m).all())
 
 
-def _near(movers: tuple[Mover, ...], path: Float64[np.ndarray, "poses 3"], clearance_m: float) -> list[Mover]:
-    """Movers whose whole round comes near the box around the path."""
-    low, high = path.min(axis=0) - clearance_m, path.max(axis=0) + clearance_m
-    near = []
-    for mover in movers:
-        places, reach = mover.route.rows[:, :3], float(np.abs(mover.box_m).max() * np.sqrt(3.0))
-        if (places.min(axis=0) <= high + reach).all() and (places.max(axis=0) >= low - reach).all():
-            near.append(mover)
-    return near
+def reaches_of(movers: tuple[Mover, ...]) -> Float64[np.ndarray, "movers 2 3"]:
+    """Boxes that movers never leave on their whole rounds: lower and upper corners [m]."""
+    boxes = np.zeros((len(movers), 2, 3))
+    for box, mover in zip(boxes, movers, strict=True):
+        places, size = mover.route.rows[:, :3], float(np.abs(mover.box_m).max() * np.sqrt(3.0))
+        box[0], box[1] = places.min(axis=0) - size, places.max(axis=0) + size
+    return boxes

@@ -12,16 +12,17 @@ from scenegen.foundation.rng import stream
 from scenegen.world import World
 from scenegen_flythrough.airspace import Airspace
 from scenegen_flythrough.fly import fly
-from scenegen_flythrough.knobs import FlightKnobs
-from scenegen_flythrough.steering import GRAVITY_MPS2, Agility
+from scenegen_flythrough.knobs import STYLES, FlightKnobs
 from scenegen_flythrough.trajectory import Trajectory
 
 FLIGHTS = 64
 FRAMES = 65
+DRAWN = STYLES[:-1]
+DENSE_S = 0.002
 
 
 def knobs_of(index: int) -> FlightKnobs:
-    """A spread of wishes: default, low and fast, low and slow, high, fine steps, coarse steps."""
+    """A spread of wishes: default, low and fast, low and slow, high, fine steps, coarse steps; every style in turn."""
     wishes: tuple[dict[str, object], ...] = (
         {},
         {"height_m": (3.0, 6.0), "speed_mps": 22.2},
@@ -30,7 +31,9 @@ def knobs_of(index: int) -> FlightKnobs:
         {"spacing_m": 0.25, "pitch_deg": (-45.0, -30.0)},
         {"spacing_m": 2.5, "bank_deg": 20.0},
     )
-    return FlightKnobs.model_validate(wishes[index % len(wishes)])
+    style = DRAWN[index % len(DRAWN)]
+    spare = () if index // 6 % 2 == 0 else ("explore",)  # the hills have no streets
+    return FlightKnobs.model_validate({"styles": (style, *spare), **wishes[index % len(wishes)]})
 
 
 @pytest.fixture(scope="module")
@@ -54,21 +57,61 @@ def solid_distance(boxes: np.ndarray, points: np.ndarray) -> np.ndarray:
     return np.linalg.norm(np.maximum(gap, 0.0), axis=2).min(axis=1)
 
 
+def dense(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray]:
+    """Instants of a flight every 2 ms, clip time, and where it is."""
+    time_s = np.arange(trajectory.time_s[0], trajectory.time_s[-1], DENSE_S)
+    return time_s, trajectory.motion.position.at(time_s + trajectory.zero_s)
+
+
 def test_one_pose_more_at_both_ends_and_time_from_the_first_frame(flights) -> None:
     for _, knobs, trajectory in flights:
         assert trajectory.world_from_camera.shape == (FRAMES + 2, 4, 4)
         assert trajectory.time_s[1] == 0.0
-        np.testing.assert_allclose(
-            np.diff(trajectory.time_s), knobs.spacing_m / trajectory.speed_mps, rtol=1e-12
-        )
-        assert knobs.speed_mps[0] <= trajectory.speed_mps <= knobs.speed_mps[1]
-        assert trajectory.rejected >= 0
+        assert (np.diff(trajectory.time_s) > 0.0).all()
+        way = (FRAMES + 1) * knobs.spacing_m
+        assert trajectory.speed_mps == pytest.approx(way / np.ptp(trajectory.time_s), rel=1e-12)
+        assert trajectory.speed_mps <= knobs.speed_mps[1] * 1.05
+        assert trajectory.rejected == sum(count for _, count in trajectory.rejections)
 
 
-def test_equal_spacing(flights) -> None:
+def test_frames_are_equally_far_apart_along_the_way(flights) -> None:
     for _, knobs, trajectory in flights:
-        steps = np.linalg.norm(np.diff(positions(trajectory), axis=0), axis=1)
-        np.testing.assert_allclose(steps, knobs.spacing_m, rtol=0, atol=1e-6)
+        time_s, path = dense(trajectory)
+        way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))])
+        at = np.interp(trajectory.time_s[:-1], time_s, way)
+        np.testing.assert_allclose(np.diff(at), knobs.spacing_m, atol=2e-4)
+        np.testing.assert_allclose(
+            positions(trajectory),
+            trajectory.motion.position.at(trajectory.time_s + trajectory.zero_s),
+            atol=1e-12,
+        )
+
+
+def test_velocity_is_the_change_of_place(flights) -> None:
+    for _, _, trajectory in flights:
+        t, h = trajectory.time_s[1:-1] + trajectory.zero_s, 1e-3
+        position = trajectory.motion.position
+        change = (position.at(t + h) - position.at(t - h)) / (2 * h)
+        np.testing.assert_allclose(trajectory.velocity_mps[1:-1], change, atol=1e-4)
+
+
+def test_no_limit_is_ever_exceeded(flights) -> None:
+    """Finite differences of places and attitudes every 2 ms, which know nothing of splines."""
+    for _, knobs, trajectory in flights:
+        limits = knobs.limits
+        time_s, path = dense(trajectory)
+        speed, pull, jerk = (np.diff(path, k, axis=0) / DENSE_S**k for k in (1, 2, 3))
+        assert np.linalg.norm(speed, axis=1).max() <= limits.speed_mps
+        assert np.linalg.norm(pull, axis=1).max() <= limits.acceleration_mps2
+        assert (
+            np.linalg.norm(jerk, axis=1).max() <= limits.jerk_mps3 + 1e-2
+        )  # rounding of places over 2 ms cubed
+        body = trajectory.motion.attitude(time_s + trajectory.zero_s).world_from_body
+        tilt = np.degrees(np.arccos(np.clip(body[:, 2, 2], -1.0, 1.0)))
+        assert tilt.max() <= limits.tilt_deg
+        yaw = np.degrees(np.unwrap(np.arctan2(-body[:, 0, 1], body[:, 1, 1])))  # square to the left wing
+        assert np.abs(np.diff(yaw)).max() / DENSE_S <= limits.yaw_rate_dps
+        assert np.abs(np.diff(yaw, 2)).max() / DENSE_S**2 <= limits.yaw_acceleration_dps2 + 1e-2
 
 
 def test_poses_are_rotations_in_the_camera_convention(flights) -> None:
@@ -80,43 +123,28 @@ def test_poses_are_rotations_in_the_camera_convention(flights) -> None:
         np.testing.assert_allclose(np.linalg.det(rotation), 1.0, atol=1e-12)  # right-handed
         np.testing.assert_array_equal(pose[:, 3], np.broadcast_to([0.0, 0.0, 0.0, 1.0], (len(pose), 4)))
         assert (rotation[:, 2, 1] < 0).all()  # y points down
-        course = (pose[2:, :3, 3] - pose[:-2, :3, 3])[:, :2]
-        course /= np.linalg.norm(course, axis=1, keepdims=True)
-        assert ((rotation[1:-1, :2, 2] * course).sum(axis=1) > 0).all()  # z looks ahead
-        assert np.abs((rotation[1:-1, :2, 0] * course).sum(axis=1)).max() < np.sin(
-            np.radians(12.0)
-        )  # x to the side
 
 
-def test_tilt_of_the_airframe_is_limited(flights) -> None:
-    """Undo the mount: the airframe's vertical is camera -y turned back about x by some angle within the knob."""
-    for _, knobs, trajectory in flights:
-        rotation = trajectory.world_from_camera[:, :3, :3]
-        roll = np.degrees(np.arcsin(np.abs(rotation[:, 2, 0])))  # how far camera x leaves the horizon
-        assert roll.max() <= knobs.bank_deg + 1e-9
-        look = np.degrees(np.arcsin(rotation[:, 2, 2]))
-        assert look.max() <= knobs.pitch_deg[1] + knobs.bank_deg + 1e-9
-        assert look.min() >= knobs.pitch_deg[0] - knobs.bank_deg - 1e-9
+def test_the_nose_follows_the_course_or_the_thing_it_circles(flights) -> None:
+    for _, _, trajectory in flights:
+        ahead = trajectory.world_from_camera[1:-1, :2, 2]
+        course = trajectory.velocity_mps[1:-1, :2]
+        cosine = (ahead * course).sum(axis=1) / np.linalg.norm(ahead, axis=1) / np.linalg.norm(course, axis=1)
+        if trajectory.style == "orbit":
+            assert np.abs(np.degrees(np.arcsin(cosine))).max() < 25.0  # sideways, leaning
+        else:
+            assert np.degrees(np.arccos(np.clip(cosine, -1, 1))).max() < 45.0
 
 
-def test_path_is_smooth(flights) -> None:
-    """Curvature within the limits and changing only gradually; no pose jumps in attitude."""
-    for _, knobs, trajectory in flights:
-        path, step = positions(trajectory), knobs.spacing_m
-        agility = Agility.of(knobs, trajectory.speed_mps)
-        bend = np.diff(path, 2, axis=0) / step**2
-        assert np.linalg.norm(bend, axis=1).max() <= 1.5 * agility.curvature  # turn and climb together
-        assert (
-            np.linalg.norm(np.diff(bend, axis=0), axis=1).max()
-            <= 2.0 * agility.onset * step + agility.curvature**2 * step
-        )
-        sideways = trajectory.speed_mps**2 * np.linalg.norm(bend[:, :2], axis=1)
-        assert sideways.max() <= GRAVITY_MPS2 * np.tan(np.radians(knobs.bank_deg)) + 1e-9
-        slope = np.abs(np.diff(path[:, 2])) / step
-        assert slope.max() <= np.sin(np.radians(knobs.climb_deg)) + 1e-9
-        axes = trajectory.world_from_camera[:, :3, :3]
-        turned = np.degrees(np.arccos(np.clip((np.einsum("nij,nij->n", axes[1:], axes[:-1]) - 1) / 2, -1, 1)))
-        assert turned.max() < 25.0 * max(step, 1.0)
+def test_the_camera_shakes_on_its_mount_by_as_much_as_asked(city, city_air: Airspace) -> None:
+    for asked in (0.0, 4.0):
+        knobs = FlightKnobs(vibration_mrad=asked)
+        trajectory = fly(city.world, knobs, 300, stream(12, "shake"), city_air)
+        body = trajectory.motion.attitude(trajectory.time_s + trajectory.zero_s).world_from_body
+        still = body @ trajectory.body_from_camera
+        shake = np.einsum("nji,njk->nik", still, trajectory.world_from_camera[:, :3, :3])
+        angles = np.stack([shake[:, 2, 1], shake[:, 0, 2], shake[:, 1, 0]])
+        np.testing.assert_allclose(1e3 * angles.std(axis=1), asked, rtol=0.15, atol=1e-9)
 
 
 def test_height_above_ground_stays_in_range(flights) -> None:
@@ -130,13 +158,10 @@ def test_height_above_ground_stays_in_range(flights) -> None:
 
 
 def test_clearance_holds_along_the_whole_path(flights, city, hills) -> None:
-    """2 cm samples of every chord against the solid boxes: free of them, never inside, and `clearance_m` is true."""
+    """Every 2 ms against the solid boxes: free of them, never inside, and `clearance_m` is true."""
     for world, knobs, trajectory in flights:
         boxes = (city if world is city.world else hills).boxes
-        path = positions(trajectory)
-        count = int(np.ceil(knobs.spacing_m / 0.02))
-        share = (np.arange(count) / count)[:, None]
-        points = np.concatenate([a + share * (b - a) for a, b in pairwise(path)])
+        points = dense(trajectory)[1][::2]
         nearest = min(solid_distance(boxes, part).min() for part in np.array_split(points, 20))
         assert trajectory.clearance_m >= knobs.clearance_m
         assert nearest >= trajectory.clearance_m - 1e-5  # float32 corners against the exact boxes
@@ -146,22 +171,20 @@ def test_clearance_is_the_smallest_distance_to_box_or_ground(city, city_air: Air
     """Over flat ground the truth is a closed form: the lower of height and box distance, at finely sampled points."""
     for index in range(12):
         trajectory = fly(city.world, FlightKnobs(), 33, stream(9, index), city_air)
-        path = positions(trajectory)
-        share = np.linspace(0, 1, 101)[:, None]
-        points = np.concatenate([a + share * (b - a) for a, b in pairwise(path)])
+        points = dense(trajectory)[1]
         truth = min(
             points[:, 2].min(), min(solid_distance(city.boxes, p).min() for p in np.array_split(points, 20))
         )
-        assert trajectory.clearance_m == pytest.approx(truth, abs=2e-3)
+        assert trajectory.clearance_m == pytest.approx(truth, abs=5e-3)
 
 
 def test_heights_and_headings_spread(city, city_air: Airspace) -> None:
     """Low flights are as likely as high ones although most free airspace is above the roofs."""
-    knobs = FlightKnobs(height_m=(4.0, 64.0))
-    flown = [positions(fly(city.world, knobs, 33, stream(3, i), city_air)) for i in range(80)]
+    knobs = FlightKnobs(styles="explore", height_m=(4.0, 64.0))
+    flown = [positions(fly(city.world, knobs, 33, stream(3, i), city_air)) for i in range(60)]
     heights = np.array([path[:, 2].mean() for path in flown])
     counts = np.histogram(heights, bins=[4, 16, 28, 40, 52, 64])[0]
-    assert counts.min() >= 6, counts
+    assert counts.min() >= 4, counts
     course = np.array([np.arctan2(*(path[-1] - path[0])[[1, 0]]) for path in flown])
     assert np.histogram(course, bins=8, range=(-np.pi, np.pi))[0].min() >= 2
     starts = np.array([path[0, :2] for path in flown])
@@ -210,7 +233,7 @@ def test_open_to_sky_knows_inside_from_outside(city, city_air: Airspace) -> None
 def test_no_flight_starts_inside_a_closed_hall(build_city) -> None:
     """A hall wide enough to fly in, and nothing else free: every draw is rejected, and the message says why."""
     hall = build_city(np.array([[[-150.0, -150.0, -1.0], [150.0, 150.0, 60.0]]]))
-    knobs = FlightKnobs(height_m=20.0, max_draws=64)
+    knobs = FlightKnobs(styles="explore", height_m=20.0, max_draws=64)
     with pytest.raises(RejectedDrawError, match="open sky"):
         fly(hall.world, knobs, 16, stream(1), Airspace(hall.world))
 
@@ -219,7 +242,7 @@ def test_too_tight_a_world_is_given_up_with_advice(build_city) -> None:
     x, y = np.meshgrid(np.arange(-148.0, 148.0, 4.0), np.arange(-148.0, 148.0, 4.0))
     low = np.stack([x.ravel(), y.ravel(), np.full(x.size, -1.0)], axis=1)
     forest = build_city(np.stack([low, low + np.array([1.0, 1.0, 31.0])], axis=1))
-    knobs = FlightKnobs(height_m=(5.0, 10.0), clearance_m=1.8, max_draws=96)
+    knobs = FlightKnobs(styles="explore", height_m=(5.0, 10.0), clearance_m=1.8, max_draws=96)
     with pytest.raises(RejectedDrawError, match=r"no free flight of 65 m .* 96 draws .* less clearance"):
         fly(forest.world, knobs, 64, stream(1), Airspace(forest.world))
 
@@ -246,7 +269,7 @@ def net(build_city) -> Airspace:
 
 def test_no_wire_between_two_frames_is_overlooked(net: Airspace) -> None:
     """Steps of 5 m: a wire is crossed between frames far more often than touched at one, also in the last step."""
-    knobs = FlightKnobs(height_m=10.0, climb_deg=0.0, spacing_m=5.0, clearance_m=0.3)
+    knobs = FlightKnobs(styles="explore", height_m=10.0, climb_deg=0.0, spacing_m=5.0, clearance_m=0.3)
     share = np.linspace(0, 1, 200)[:, None]
     searched = 0
     for index in range(40):
@@ -259,14 +282,16 @@ def test_no_wire_between_two_frames_is_overlooked(net: Airspace) -> None:
 
 
 def test_a_flight_longer_than_a_mesh_of_the_net_is_impossible(net: Airspace) -> None:
-    knobs = FlightKnobs(height_m=10.0, climb_deg=0.0, spacing_m=5.0, clearance_m=0.3, max_draws=128)
+    knobs = FlightKnobs(
+        styles="explore", height_m=10.0, climb_deg=0.0, spacing_m=5.0, clearance_m=0.3, max_draws=128
+    )
     with pytest.raises(RejectedDrawError):
         fly(net.world, knobs, 8, stream(6), net)
 
 
 def test_rejected_draws_are_counted_one_by_one(net: Airspace) -> None:
     """Allowing exactly one draw more than were rejected gives the same flight; allowing no more gives none."""
-    knobs = FlightKnobs(height_m=10.0, climb_deg=0.0, spacing_m=4.0, clearance_m=0.3)
+    knobs = FlightKnobs(styles="explore", height_m=10.0, climb_deg=0.0, spacing_m=4.0, clearance_m=0.3)
     counts = []
     for index in range(12):
         trajectory = fly(net.world, knobs, 1, stream(8, index), net)

@@ -1,0 +1,1 @@
+"""Flights that somebody flew, read from files of others."""
