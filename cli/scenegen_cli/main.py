@@ -18,6 +18,7 @@ COMMANDS = {
     "info": "what a dataset holds",
     "status": "how far a dataset is while it is being made",
     "verify": "check every byte, array and rule of a dataset",
+    "fly": "fly missions in closed loop and count collisions",
     "doctor": "check this machine and say what to do",
     "maps": "list the kinds of worlds",
     "classes": "list the semantic classes",

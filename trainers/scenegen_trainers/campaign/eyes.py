@@ -14,7 +14,7 @@ from scenegen_datasets.stopwatch import Stopwatch
 from scenegen_flythrough.loop.pilot import Need
 from scenegen_render.bake import bake
 from scenegen_render.camera import Camera
-from scenegen_render.sensor.sense import Microbolometer
+from scenegen_render.sensor.flock import Flock
 from scenegen_render.trace.lit import light
 from scenegen_render.trace.scenery import Scenery, scenery
 from scenegen_render.trace.views import Views
@@ -102,26 +102,22 @@ class Eyes:
 
 
 class _Cameras:
-    """A microbolometer for each flight: its own fixed pattern, lag and noise."""
+    """The thermal cameras of a batch, and what each reported last."""
 
     def __init__(self, recipe: Recipe, batch: Batch, camera: Camera) -> None:
-        self._units = {
-            flight: Microbolometer(
-                camera, recipe.sensor, stream(recipe.seed, "flight", batch.map, flight, "sensor")
-            )
-            for flight in batch.flights
-        }
+        rngs = {k: stream(recipe.seed, "flight", batch.map, k, "sensor") for k in batch.flights}
+        self._flock = Flock(camera, recipe.sensor, rngs)
         self._before: dict[int, UInt16[np.ndarray, "rows columns"]] = {}
 
     def read(
         self, flights: Int64[np.ndarray, "n"], radiance: Float32[np.ndarray, "n rows columns"], time_s: float
     ) -> tuple[UInt16[np.ndarray, "n rows columns"], UInt16[np.ndarray, "n rows columns"]]:
         """Frames of now and of the reading before."""
+        now = self._flock.read(flights, radiance, time_s)
         ids = flights.tolist()
-        now = {k: self._units[k].read(frame, time_s).counts for k, frame in zip(ids, radiance, strict=True)}
-        before = [self._before.get(k, now[k]) for k in ids]
-        self._before = now
-        return np.stack([now[k] for k in ids]), np.stack(before)
+        before = np.stack([self._before.get(flight, now[k]) for k, flight in enumerate(ids)])
+        self._before = dict(zip(ids, now, strict=True))
+        return now, before
 
 
 def _scenery(

@@ -64,7 +64,6 @@ def batches(map: str, flights: int, knobs: CampaignKnobs) -> tuple[Batch, ...]:
     return tuple(found)
 
 
-def batch_of(map: str, flight: int, knobs: CampaignKnobs) -> Batch:
-    """The whole batch a flight belongs to."""
-    size = knobs.flights_per_batch
-    return batches(map, (flight // size + 1) * size, knobs)[-1]
+def batch_of(map: str, flight: int, flights: int, knobs: CampaignKnobs) -> Batch:
+    """The batch a flight belongs to, of a campaign of so many flights."""
+    return batches(map, flights, knobs)[flight // knobs.flights_per_batch]

@@ -16,6 +16,7 @@ from scenegen_datasets.run_log import RunLog, machine
 from scenegen_trainers.campaign.plan import Batch, batches
 from scenegen_trainers.campaign.recipe import FlightRecipe
 from scenegen_trainers.campaign.store import BASE_POINT, CampaignStore, check_output
+from scenegen_trainers.campaign.sweep import Point
 from scenegen_trainers.pilots.spec import PilotSpec
 
 WORKER = "scenegen_trainers.campaign.worker:worker"
@@ -41,6 +42,8 @@ class Campaign:
         Of each pilot over each map, at each point.
     root : Path
     processes : int
+    sweep : tuple of Point
+        What `points` differ by.
     """
 
     recipe: FlightRecipe
@@ -49,6 +52,7 @@ class Campaign:
     flights: int
     root: Path
     processes: int
+    sweep: tuple[Point, ...] = ()
 
     @property
     def swept(self) -> bool:
@@ -60,6 +64,11 @@ class Campaign:
         """Batches of each map; the same for all pilots and points."""
         knobs = self.recipe.campaign
         return {map: batches(map, self.flights, knobs) for map in self.recipe.dataset.map}
+
+    @property
+    def total(self) -> int:
+        """Flights there are to fly."""
+        return self.flights * len(self.plans) * len(self.points) * len(self.pilots)
 
     def everything(self) -> Iterator[tuple[str, int, Batch]]:
         """Every batch there is to fly: point, pilot, batch; those of a world follow each other."""
@@ -139,8 +148,8 @@ def run(campaign: Campaign, told: Told) -> dict[str, str]:
 def _fly(
     campaign: Campaign, missing: list[tuple[str, int, Batch]], log: RunLog, told: Told
 ) -> dict[str, str]:
-    total = campaign.flights * len(campaign.plans) * len(campaign.points) * len(campaign.pilots)
-    here, flown = 0, total - sum(batch.count for _, _, batch in missing)
+    here, total = 0, campaign.total
+    flown = total - sum(batch.count for _, _, batch in missing)
     failed: dict[str, str] = {}
     told(Progress(flown, total, here))
     with Pool(

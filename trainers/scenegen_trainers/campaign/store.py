@@ -9,7 +9,7 @@ DIR/run.log.jsonl                                    when, where, at what cost; 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -27,14 +27,12 @@ from scenegen_trainers.campaign.record import BatchRecord
 SCHEMA = 1
 """Version of all files of a campaign; a reader refuses what is newer than itself."""
 
-LOCK, FLIGHTS, RESULTS, CSV, PARQUET, PAGE, REPLAYS = (
-    "campaign.json", "flights", "results.json", "flights.csv", "flights.parquet", "index.html", "replays",
-)  # fmt: skip
-
+LOCK, RESULTS, CSV, PARQUET = "campaign.json", "results.json", "flights.csv", "flights.parquet"
+PAGE, FLIGHTS, PLANS, REPLAYS = "index.html", "flights", "plans", "replays"
 BASE_POINT = "base"
 """Name of the one point of a campaign that sweeps nothing."""
 
-_OURS = (LOCK, FLIGHTS, RESULTS, CSV, PARQUET, PAGE, REPLAYS, RUN_LOG, WRITER_LOCK)
+_OURS = (LOCK, RESULTS, CSV, PARQUET, PAGE, FLIGHTS, PLANS, REPLAYS, RUN_LOG, WRITER_LOCK)
 
 
 class CampaignStore:
@@ -64,7 +62,8 @@ class CampaignStore:
             self._refuse_other(wanted)
         else:
             write_atomic(path, canonical.pretty(wanted))
-        for directory in (self.root, *(p for p in (self.root / FLIGHTS).rglob("*") if p.is_dir())):
+        folders = [p for name in (FLIGHTS, PLANS, REPLAYS) for p in (self.root / name).rglob("**/")]
+        for directory in (self.root, *folders):
             remove_partials(directory)
 
     def commit(self, point: str, pilot: str, batch: Batch, record: BatchRecord) -> None:
@@ -89,6 +88,24 @@ class CampaignStore:
         if [flight.flight for flight in wanted] != list(batch.flights):
             return None
         return BatchRecord(record.world, record.hour, record.weather, record.season, wanted)
+
+    def plan_path(self, map: str, world: int, ending: str = "webp") -> Path:
+        """Of the map of a world."""
+        assert is_slug(map), map
+        return self.root / PLANS / f"{map}-{world:05d}.{ending}"
+
+    def commit_plan(self, map: str, world: int, picture: bytes, frame: Mapping[str, Any]) -> None:
+        """Keep the map of a world; the frame comes last and says that it is there."""
+        make_directories(self.root, PLANS)
+        write_atomic(self.plan_path(map, world), picture)
+        write_atomic(self.plan_path(map, world, "json"), canonical.pretty(dict(frame)))
+
+    def read_plan(self, map: str, world: int) -> tuple[bytes, Any] | None:
+        """The map of a world and its frame; None if there is none."""
+        try:
+            return self.plan_path(map, world).read_bytes(), canonical.read(self.plan_path(map, world, "json"))
+        except (OSError, DatasetError):
+            return None
 
     def _path(self, point: str, pilot: str, batch: Batch) -> Path:
         for word in (point, batch.map, pilot):

@@ -5,18 +5,21 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from scenegen_datasets.stopwatch import Stopwatch
 from scenegen_flythrough.loop.pilot import Pilot
 from scenegen_render.camera import Camera
+from scenegen_render.trace.scenery import scenery
 from scenegen_render.trace.views import Views
 from scenegen_trainers.campaign.place import Places
 from scenegen_trainers.campaign.plan import Batch
 from scenegen_trainers.campaign.recipe import FlightRecipe
+from scenegen_trainers.campaign.report.plan_view import Frame, draw_plan
 from scenegen_trainers.campaign.sortie import Sortie, Witness
-from scenegen_trainers.campaign.store import CampaignStore
+from scenegen_trainers.campaign.store import BASE_POINT, CampaignStore
 from scenegen_trainers.pilots.spec import PilotSpec, raise_pilot
 
 Told = Callable[[dict[str, Any]], None]
@@ -47,6 +50,12 @@ class Airfield:
                 self._pilots[key] = raise_pilot(spec, recipe.loop, recipe.dataset.camera.camera())
         return self._pilots[key]
 
+    def plan(self, recipe: FlightRecipe, batch: Batch) -> tuple[bytes, dict[str, Any]]:
+        """A map of a batch's world for the report, and where its camera stands."""
+        place = self.places.at(recipe.dataset, batch.map, batch.world)
+        picture = draw_plan(place.world, scenery(place.loaded), 0.0)
+        return picture, asdict(Frame.of(place.world))
+
     def _views_of(self, recipe: FlightRecipe) -> Views:
         camera, tracing = recipe.dataset.camera.camera(), recipe.dataset.render
         key = camera, tracing.sub_samples
@@ -67,6 +76,9 @@ def worker(setup: Mapping[str, Any]) -> Callable[[dict[str, Any], Told], dict[st
         batch = Batch(**payload["batch"])
         told({"stage": f"{batch.map} {batch.world}"})
         sortie = airfield.sortie(recipe, batch)
+        if payload["point"] == BASE_POINT and store.read_plan(batch.map, batch.world) is None:
+            with airfield.watch("plan"):
+                store.commit_plan(batch.map, batch.world, *airfield.plan(recipe, batch))
         record = sortie.fly(airfield.pilot(spec, recipe), _sign_of_life(told))
         store.commit(payload["point"], spec.slug, batch, record)
         decisions = sum(flight.decisions for flight in record.flights)
@@ -75,14 +87,26 @@ def worker(setup: Mapping[str, Any]) -> Callable[[dict[str, Any], Told], dict[st
     return fly
 
 
+def find_modules_here(path: str = "") -> None:
+    """Look for plug-ins in the user's own directory too, last of all."""
+    here = path or str(Path.cwd())
+    if here not in sys.path:
+        sys.path.append(here)
+
+
+def check_pilot(spec: PilotSpec, recipe: FlightRecipe) -> None:
+    """Build a pilot and forget it: what is wrong with its file is said before any world is built."""
+    if spec.kind != "name":
+        raise_pilot(spec, recipe.loop, recipe.dataset.camera.camera())
+
+
 def settle(path: str) -> None:
-    """One thread for everything, and the user's own directory last among those modules are looked for in."""
+    """One thread for everything; modules of the user's own directory can be imported."""
     import cv2
 
     from scenegen_render import backend
 
-    if path not in sys.path:
-        sys.path.append(path)
+    find_modules_here(path)
     cv2.setNumThreads(1)
     backend.set_threads(1)
 

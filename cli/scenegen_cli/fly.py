@@ -1,0 +1,286 @@
+"""``scenegen fly``: many flights of one or two pilots, and what came of them."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from scenegen.foundation.errors import InputError
+from scenegen.foundation.strict_yaml import read_mapping
+from scenegen.maps.own_scene.own_scene import describe
+from scenegen_cli.console import note, say, say_json, table
+from scenegen_cli.leaving import TerminatedError
+from scenegen_cli.making import processes
+from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
+from scenegen_datasets.recipe import Recipe
+from scenegen_datasets.resolve import Source, leaves
+
+if TYPE_CHECKING:
+    from scenegen_trainers.campaign.results import Results
+    from scenegen_trainers.campaign.run import Campaign
+    from scenegen_trainers.campaign.summary import Duel, Line, Spread
+
+_MOST_FLIGHTS = 1_000_000
+
+
+@dataclass(frozen=True)
+class Fly:
+    """Fly missions in closed loop and count collisions. Run again to resume; raise --flights to fly more.
+
+    Takes all recipe keys as flags as well, such as --map, --seed, --climate.date and --loop.radius-m.
+    """
+
+    flights: int = 100
+    """Missions of each map, the same for every pilot."""
+    pilot: str = "oracle"
+    """Who flies: oracle (true depth), blind, a depth network (.pt, .onnx), or module:attribute."""
+    versus: str | None = None
+    """A second pilot on the same missions, compared flight by flight."""
+    planner: str = "waypoint"
+    """Turns depth into velocities: waypoint, five_section, straight, or module:attribute."""
+    hours: tuple[float, ...] = ()
+    """Hours of the day; batches take turns at several. By default every batch has one of its own."""
+    netd: float | None = None
+    """NETD of the thermal camera [mK]; short for --sensor.netd-mk."""
+    speed: float | None = None
+    """Cruise speed [m/s]; short for --loop.cruise-mps."""
+    difficulty: float | None = None
+    """Share of missions whose straight way is obstructed; short for --mission.difficulty."""
+    latency: str | None = None
+    """From frame to command: milliseconds, or 'measured' for what the pilot takes on this machine."""
+    sweep: tuple[str, ...] = ()
+    """KEY=VALUE,VALUE: fly all missions at each value of speed, hour, netd, weather, ... or of a recipe key."""
+    replay: tuple[int, ...] = ()
+    """Flights to fly once more and keep as animations: thermal, believed depth, true depth."""
+    out: Path | None = None
+    """Directory of the campaign; by default flights-MAP here."""
+    recipe: Path | None = None
+    """YAML file of recipe keys; flags win over it."""
+    size: str | None = None
+    """Image size WIDTHxHEIGHT; keeps the camera's horizontal field of view."""
+    jobs: int = 0
+    """Worker processes; 0 is one per CPU."""
+    dry_run: bool = False
+    """Say what would be flown, and stop."""
+    json: bool = False
+    """Report as JSON."""
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run the subcommand; returns the exit code."""
+    from scenegen_trainers.campaign.recipe import flight_keys
+
+    keys = [key for key, _, _ in (*leaves(Recipe), *flight_keys())]
+    try:
+        own, flags = split_recipe_flags(arguments, keys)
+        command = parse(Fly, "fly", own, _recipe_help())
+    except HelpShown:
+        return 0
+    campaign = ask(command, flags)
+    again = ["scenegen", "fly", *arguments, *([] if command.out else ["--out", str(campaign.root)])]
+    if command.dry_run:
+        return _say_plan(campaign, command.json)
+    return _fly(campaign, command, again)
+
+
+def ask(command: Fly, flags: Mapping[str, Any]) -> Campaign:
+    """The campaign a command line asks for.
+
+    Parameters
+    ----------
+    command : Fly
+    flags : mapping
+        Recipe keys from the command line, nested.
+
+    Raises
+    ------
+    InputError
+        For whatever is wrong with it, before anything is built.
+    """
+    from scenegen_flythrough.planners.registry import planner
+    from scenegen_trainers.campaign.recipe import resolve_flights
+    from scenegen_trainers.campaign.run import Campaign
+    from scenegen_trainers.campaign.store import BASE_POINT
+    from scenegen_trainers.campaign.sweep import parse_sweep
+    from scenegen_trainers.campaign.worker import check_pilot, find_modules_here
+    from scenegen_trainers.pilots.spec import parse_pilot
+
+    if not 1 <= command.flights <= _MOST_FLIGHTS:
+        raise InputError(f"--flights {command.flights}: ask for 1 to {_MOST_FLIGHTS:,}")
+    sources = _sources(command, flags)
+    recipe = resolve_flights(sources)
+    for scene in recipe.dataset.scenes.values():
+        describe(scene)
+    sweep = parse_sweep(command.sweep)
+    points = {
+        point.name: resolve_flights([*sources, Source(f"--sweep {point.axis}={point.value}", point.keys)])
+        for point in sweep
+    }
+    find_modules_here()
+    planner(command.planner, recipe.loop)
+    words = [command.pilot, *([command.versus] if command.versus is not None else [])]
+    pilots = tuple(parse_pilot(word, command.planner) for word in words)
+    if len(set(pilots)) < len(pilots):
+        raise InputError(f"--versus {command.versus}: is the pilot itself; name another")
+    for spec in pilots:
+        check_pilot(spec, recipe)
+    wrong = [k for k in command.replay if not 0 <= k < command.flights]
+    if wrong:
+        raise InputError(f"--replay {wrong[0]}: this campaign has flights 0 to {command.flights - 1}")
+    root = command.out or Path("-".join(("flights", *recipe.dataset.map)))
+    return Campaign(
+        recipe=recipe,
+        points=points or {BASE_POINT: recipe},
+        pilots=pilots,
+        flights=command.flights,
+        root=root,
+        processes=processes(command.jobs),
+        sweep=sweep,
+    )
+
+
+def _sources(command: Fly, flags: Mapping[str, Any]) -> list[Source]:
+    """What was asked for, from the weakest to the strongest."""
+    sources = (
+        [Source(str(command.recipe), read_mapping(command.recipe))] if command.recipe is not None else []
+    )
+    if command.size is not None:
+        width, height = parse_size(command.size)
+        sources.append(Source(f"--size {command.size}", {"camera": {"width_px": width, "height_px": height}}))
+    for flag, value, keys in (
+        ("--hours", command.hours or None, ("campaign", "hours")),
+        ("--netd", command.netd, ("sensor", "netd_mk")),
+        ("--speed", command.speed, ("loop", "cruise_mps")),
+        ("--difficulty", command.difficulty, ("mission", "difficulty")),
+    ):
+        if value is not None:
+            sources.append(Source(flag, {keys[0]: {keys[1]: value}}))
+    if command.latency is not None:
+        sources.append(Source(f"--latency {command.latency}", {"loop": _latency(command.latency)}))
+    return [*sources, Source("", flags)]
+
+
+def _latency(text: str) -> dict[str, Any]:
+    if text == "measured":
+        return {"latency": "measured"}
+    try:
+        return {"latency": "fixed", "latency_ms": float(text)}
+    except ValueError:
+        raise InputError(f"--latency {text}: give milliseconds, or 'measured'") from None
+
+
+def _say_plan(campaign: Campaign, as_json: bool) -> int:
+    if as_json:
+        say_json(
+            {
+                "root": str(campaign.root),
+                "flights": campaign.total,
+                "points": list(campaign.points),
+                "batches": {
+                    map: [{"world": b.world, "flights": b.count} for b in plan]
+                    for map, plan in campaign.plans.items()
+                },
+                "recipe": campaign.recipe.canonical(),
+            }
+        )
+    else:
+        say(f"{campaign.root}: {_plan_in_words(campaign)}")
+    return 0
+
+
+def _plan_in_words(campaign: Campaign) -> str:
+    worlds = sum(len({batch.world for batch in plan}) for plan in campaign.plans.values())
+    camera = campaign.recipe.dataset.camera
+    swept = f" at {len(campaign.points)} points" if campaign.swept else ""
+    return (
+        f"{campaign.total:,} flights of {', '.join(spec.name for spec in campaign.pilots)}{swept} through "
+        f"{worlds} world{'s' if worlds > 1 else ''} ({', '.join(campaign.recipe.dataset.map)}), "
+        f"{camera.width_px}x{camera.height_px}, {campaign.processes} process{'es' if campaign.processes > 1 else ''}"
+    )
+
+
+def _fly(campaign: Campaign, command: Fly, again: Sequence[str]) -> int:
+    from scenegen_cli.flying import fly_meter
+    from scenegen_trainers.campaign.replay import replay
+    from scenegen_trainers.campaign.report.page import write_page
+    from scenegen_trainers.campaign.results import gather, to_json, write
+    from scenegen_trainers.campaign.run import run as fly
+
+    if not command.json:
+        note(f"{campaign.root}: {_plan_in_words(campaign)}")
+    try:
+        with fly_meter(quiet=command.json) as told:
+            failed = fly(campaign, told)
+            results = gather(campaign)
+            files = [*write(campaign, results), write_page(campaign, results)]
+            for flight in command.replay:
+                files += replay(campaign, flight)
+    except (KeyboardInterrupt, TerminatedError):
+        note(f"interrupted; finished batches are kept. Continue with: {shlex.join(again)}")
+        raise
+    if command.json:
+        say_json({**to_json(campaign, results), "failed": failed, "files": [str(file) for file in files]})
+    else:
+        say(_words(campaign, results))
+        say("\n".join(f"{file}" for file in files))
+    for batch, reason in failed.items():
+        note(f"put aside: {batch}: {reason}")
+    return PUT_ASIDE if failed else 0
+
+
+PUT_ASIDE = 3
+"""Exit code of a campaign that finished without some of its batches."""
+
+
+def _words(campaign: Campaign, results: Results) -> str:
+    head = ("point", "map", "pilot", "flights", "collisions", "95 %", "goal", "timeout", "pilot failed")
+    rows = [(*head, "progress", "speed", "latency"), *(_row(line) for line in results.lines)]
+    if not campaign.swept:
+        rows = [row[1:] for row in rows]
+    return "\n".join([table(rows), *(_compared(duel, campaign.swept) for duel in results.duels)])
+
+
+def _row(line: Line) -> tuple[str, ...]:
+    hit = line.collision
+    counts = [str(line.ends[kind].count) for kind in ("goal", "timeout", "pilot")]
+    rate = f"{100 * hit.share:.2f} %" if hit.of else "-"
+    return (
+        line.point,
+        line.map,
+        line.pilot,
+        str(line.flights),
+        rate,
+        f"{100 * hit.low:.1f}-{100 * hit.high:.1f}",
+        *counts,
+        _mean(line.progress, 100.0, "%"),
+        _mean(line.speed_mps, 1.0, "m/s"),
+        _mean(line.latency_ms, 1.0, "ms"),
+    )
+
+
+def _mean(spread: Spread, factor: float, unit: str) -> str:
+    return "-" if spread.mean is None else f"{factor * spread.mean:.3g} {unit}"
+
+
+def _compared(duel: Duel, swept: bool) -> str:
+    where = f"{duel.map} {duel.point}" if swept else duel.map
+    paired = duel.paired
+    return (
+        f"{where}: only {duel.first} collided on {paired.first_only} missions, only {duel.second} on "
+        f"{paired.second_only}; McNemar p = {paired.p:.2g}"
+    )
+
+
+def _recipe_help() -> str:
+    """Recipe keys of the closed loop; those of the dataset are `scenegen render`'s."""
+    from scenegen_trainers.campaign.recipe import flight_keys
+
+    lines = ["", "", "recipe keys of the closed loop, as flags here or in a YAML file:"]
+    for key, meaning, default in flight_keys():
+        shown = " ".join(map(str, default)) if isinstance(default, tuple) else default
+        lines.append(f"  --{key.replace('_', '-')}  {meaning} ({shown})")
+    lines.append("those of worlds, weather and camera: scenegen render --help")
+    return "\n".join(lines)
