@@ -35,6 +35,8 @@ from scenegen.world import World
 _MARGIN_M = 12.0
 _BENCH_M = 1.1
 """Reach of a bench from its middle."""
+_POST_M = 0.35
+"""Radius that a post or a bin takes from people who stand about."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +136,12 @@ def _build(plans: _Plans, shop: CityWorkshop, rng: np.random.Generator) -> tuple
     at_kerb = np.concatenate([plans.furniture.posts(), plans.overhead.places()])
     benches = shapely.buffer(shapely.points(plans.furniture.rows["bench"][:, :2]), _BENCH_M)
     taken = np.concatenate(
-        [shapely.points(at_kerb), benches, plans.stops.outlines(), plans.traffic.outlines()]
+        [
+            shapely.buffer(shapely.points(at_kerb), _POST_M, quad_segs=2),
+            benches,
+            plans.stops.outlines(),
+            plans.traffic.outlines(),
+        ]
     )
     people, people_at = build_people(streets, parks, plans.stops, taken, shop, crowd)
     trees, tree_count = build_greenery(

@@ -9,7 +9,7 @@ import shapely
 from jaxtyping import Float64
 
 from scenegen.geometry.part import Part
-from scenegen.geometry.placement import along, clear_of
+from scenegen.geometry.placement import along, clear_of, first_come
 from scenegen.maps.city.park import ParkPlan
 from scenegen.maps.city.stops import Stops
 from scenegen.maps.city.streets import Rank, StreetPlan
@@ -21,6 +21,7 @@ _FROM_KERB_M = 0.6
 _SIGNS = ("sign", "round_sign", "triangle_sign")
 _AT_KERB = ("lamp", "traffic_light", "gantry_light", *_SIGNS, "litter_bin")
 _GANTRY_SHARE, _BESIDE_M = 0.6, 0.3
+_BIN_M, _BIN_GAP_M = 0.35, 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +59,8 @@ def plan_furniture(
     kind = rng.integers(len(_SIGNS), size=len(signs))
     rows = {"lamp": lamps, "traffic_light": lights, "gantry_light": gantries, "bench": benches}
     rows |= {name: signs[kind == k] for k, name in enumerate(_SIGNS)}
-    rows["litter_bin"] = _bins(lamps, benches, stops.shelters, rng)
+    standing = np.concatenate([r[:, :2] for r in rows.values()])
+    rows["litter_bin"] = _bins(lamps, benches, stops.shelters, standing, rng)
     shelters = stops.outlines()
     rows = {name: r[clear_of(shapely.points(r[:, :2]), shelters, _BESIDE_M)] for name, r in rows.items()}
     return Furniture(rows | {"bus_shelter": stops.shelters})
@@ -74,9 +76,13 @@ def build_furniture(furniture: Furniture, shop: CityWorkshop, rng: np.random.Gen
 
 
 def _bins(
-    lamps: np.ndarray, benches: np.ndarray, shelters: np.ndarray, rng: np.random.Generator
+    lamps: np.ndarray,
+    benches: np.ndarray,
+    shelters: np.ndarray,
+    standing: np.ndarray,
+    rng: np.random.Generator,
 ) -> Float64[np.ndarray, "bins 3"]:
-    """Bins beside some lamps and benches and at every bus stop."""
+    """Bins beside some lamps and benches and at every bus stop, clear of what stands already."""
     sides = ((lamps, -0.5 * np.pi, 0.75, 0.16), (benches, 0.0, 1.35, 0.5), (shelters, 0.0, 2.6, 1.0))
     found = [np.zeros((0, 3))]
     for rows, turn, reach_m, share in sides:
@@ -84,7 +90,10 @@ def _bins(
         angle = some[:, 2] + turn
         xy = some[:, :2] + reach_m * np.column_stack([np.cos(angle), np.sin(angle)])
         found.append(np.column_stack([xy, some[:, 2]]))
-    return np.concatenate(found)
+    bins = np.concatenate(found)
+    plans = shapely.buffer(shapely.points(bins[:, :2]), _BIN_M, quad_segs=2)
+    bins = bins[clear_of(plans, shapely.points(standing), _BIN_GAP_M) & first_come(plans)]
+    return np.asarray(bins)
 
 
 def _posts(plan: StreetPlan, covered: int | None, rng: np.random.Generator) -> tuple[np.ndarray, ...]:
