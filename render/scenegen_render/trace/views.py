@@ -2,12 +2,14 @@
 
 Lanes of all views stand side by side, each with the pose of its own view. Neither the number of views nor the time nor
 the number of movers is part of a kernel, so that nothing is compiled twice while drones come down and movers pass by.
-A view does not depend on the others it is traced with: it is that of `Tracer.frame`, to the bit.
+A view does not depend on the others it is traced with: depth and radiance are those of `Tracer.frame`, to the bit. Where
+only depth is traced, other rays share a packet: of a million, one or two meet the edge between two faces and choose the
+other one, which is the last bit of a float.
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -26,6 +28,8 @@ from scenegen_render.trace.troupe import View
 
 Layer = Literal["depth", "radiance", "semantic", "instance"]
 _DEPTH: tuple[Layer, ...] = ("depth",)
+_MOST_RAYS = 8_000_000
+"""Of one launch, which keep some 25 bytes each: more views than that are traced in several."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +95,21 @@ class Views:
         FloatingPointError
             If depth or radiance came out as no number.
         """
+        rays = (
+            self.camera.width_px * self.camera.height_px * (self._sampler.count if "radiance" in want else 1)
+        )
+        most = max(1, _MOST_RAYS // rays)
+        parts = [self._look(scenery, poses[k : k + most], time_s, want) for k in range(0, len(poses), most)]
+        return parts[0] if len(parts) == 1 else _joined(parts)
+
+    def _look(
+        self,
+        scenery: Scenery,
+        poses: Float64[np.ndarray, "views 4 4"],
+        time_s: float,
+        want: Collection[Layer],
+    ) -> Seen:
+        """As `look`, in one launch."""
         _, dr = backend.modules()
         fleet = Fleet.of(poses)
         view = scenery.troupe.seen_by_all(time_s, self.camera, poses, mirrors="radiance" in want)
@@ -180,3 +199,11 @@ class Views:
             None if semantic is None else semantic.astype(np.uint8),
             image.get("instance"),
         )
+
+
+def _joined(parts: Sequence[Seen]) -> Seen:
+    layers = {
+        name: [getattr(part, name) for part in parts]
+        for name in ("depth", "radiance", "semantic", "instance")
+    }
+    return Seen(**{name: np.concatenate(all_) for name, all_ in layers.items() if all_[0] is not None})

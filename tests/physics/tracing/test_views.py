@@ -89,6 +89,21 @@ def test_a_view_does_not_depend_on_who_flies_along(lit: Lit, shape: Scenery) -> 
             same(together, k, backwards, want, len(poses) - 1 - k)
 
 
+def test_more_views_than_one_launch_may_hold_are_traced_in_several(
+    lit: Lit, shape: Scenery, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    views, poses = Views(CAMERA), flock()
+    for place, want in ((shape, ("depth", "semantic")), (lit, EVERYTHING)):
+        at_once = views.look(place, poses, 3.0, want)
+        rays = CAMERA.width_px * CAMERA.height_px * (4 if "radiance" in want else 1)
+        monkeypatch.setattr("scenegen_render.trace.views._MOST_RAYS", 3 * rays + 1)
+        in_parts = views.look(place, poses, 3.0, want)
+        monkeypatch.undo()
+        for k in range(len(poses)):
+            same(in_parts, k, at_once, want, k)
+        assert (in_parts.radiance is None) == ("radiance" not in want)
+
+
 def test_only_movers_that_somebody_sees_are_placed_and_they_are_where_the_company_has_them(
     peopled: World, shape: Scenery
 ) -> None:
