@@ -2,9 +2,9 @@
 
 Lanes of all views stand side by side, each with the pose of its own view. Neither the number of views nor the time nor
 the number of movers is part of a kernel, so that nothing is compiled twice while drones come down and movers pass by.
-A view does not depend on the others it is traced with: depth and radiance are those of `Tracer.frame`, to the bit. Where
-only depth is traced, other rays share a packet: of a million, one or two meet the edge between two faces and choose the
-other one, which is the last bit of a float.
+A view does not depend on the others it is traced with: depth and radiance are those of `Tracer.frame`, to the bit.
+Where only depth is traced, other rays share a packet: of a million, one or two meet the edge between two faces and
+choose the other one, which is the last bit of a float.
 """
 
 from __future__ import annotations
