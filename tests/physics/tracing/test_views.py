@@ -78,6 +78,19 @@ def test_views_are_the_frames_of_their_poses(lit: Lit, shape: Scenery, sub_sampl
     assert np.isinf(measured.depth[5]).mean() > 0.5
 
 
+def test_images_that_do_not_fill_packets_of_rays_are_the_frames_too(lit: Lit, shape: Scenery) -> None:
+    """With 37 x 27 pixels, rays of two views share packets and tiles are cut; only a last bit may differ."""
+    odd = Camera.from_fov(37, 27, 75.0)
+    views, tracer, poses = Views(odd), Tracer(odd, RenderKnobs()), flock()
+    photographed, measured = views.look(lit, poses, 7.3, EVERYTHING), views.look(shape, poses, 7.3)
+    for k, pose in enumerate(poses):
+        frame = tracer.frame(lit, pose, pose, None, (7.3,) * 3)
+        np.testing.assert_array_equal(photographed.instance[k], frame.instance)
+        np.testing.assert_allclose(photographed.radiance[k], frame.radiance, rtol=1e-6)
+        for seen in (photographed, measured):
+            np.testing.assert_allclose(seen.depth[k], frame.depth, rtol=3e-7)
+
+
 def test_a_view_does_not_depend_on_who_flies_along(lit: Lit, shape: Scenery) -> None:
     views, poses = Views(CAMERA), flock()
     for place, want in ((shape, ("depth",)), (lit, ("depth", "radiance"))):
