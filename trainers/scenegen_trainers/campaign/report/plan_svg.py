@@ -47,7 +47,9 @@ def _flight(frame: Frame, flight: FlightRecord) -> str:
     colour = END_COLOUR[flight.kind]
     start, goal = frame.to_pixels(np.array([flight.start_m, flight.goal_m]))
     end = frame.to_pixels(np.array([flight.place_m]))[0]
+    left = f"M{end[0]:.1f} {end[1]:.1f}L{goal[0]:.1f} {goal[1]:.1f}" if flight.kind != "goal" else ""
     marks = [
+        f'<path d="{left}" class="left" stroke="{colour}"/>' if left else "",
         f'<path d="{_path(way)}" stroke="{colour}"/>',
         f'<circle cx="{start[0]:.1f}" cy="{start[1]:.1f}" r="2.6" fill="{colour}"/>',
         f'<circle cx="{goal[0]:.1f}" cy="{goal[1]:.1f}" r="4" class="ring" stroke="{colour}"/>',

@@ -27,6 +27,7 @@ svg.bar{display:block;width:100%;min-width:150px;height:12px;border-radius:3px}
 svg.plan{display:block;width:100%;border-radius:6px;background:#10131a}
 .flight path{fill:none;stroke-width:1.7;stroke-linejoin:round;opacity:.85}
 .flight .ring{fill:none;stroke-width:1.4;opacity:.8}
+.flight path.left{stroke-width:1;stroke-dasharray:2 5;opacity:.45}
 .flight path.halo{stroke:#10131a;stroke-width:5.5;opacity:.75}
 .flight path.cross{stroke:#ff5c5c;stroke-width:2.6;opacity:1}
 .flight:hover path{stroke-width:3.2;opacity:1}
