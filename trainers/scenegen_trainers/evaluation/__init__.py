@@ -1,0 +1,1 @@
+"""How good a network is: scores, strata, intervals, trivial baselines, pictures."""

@@ -1,0 +1,1 @@
+"""Teaching networks: recipe, samples, loop, log, pictures."""

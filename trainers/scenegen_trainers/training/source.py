@@ -1,0 +1,71 @@
+"""The dataset of a training: its splits as samples, its camera, its identity."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from scenegen.foundation.errors import InputError
+from scenegen_datasets.description import read_description
+from scenegen_datasets.loader import PairDataset
+from scenegen_datasets.store import DATASET
+from scenegen_trainers.training.recipe import TrainingRecipe
+from scenegen_trainers.training.redraw import Redrawn
+from scenegen_trainers.training.samples import Samples
+
+
+@dataclass(frozen=True)
+class TrainingData:
+    """A finished dataset.
+
+    Attributes
+    ----------
+    root : Path
+    name, version, content_id : str
+    band_um : (float, float)
+    """
+
+    root: Path
+    name: str
+    version: str
+    content_id: str
+    band_um: tuple[float, float]
+
+    @classmethod
+    def at(cls, root: Path) -> TrainingData:
+        """Of a directory.
+
+        Raises
+        ------
+        InputError
+            If there is no finished dataset.
+        """
+        PairDataset(
+            root, layers=()
+        )  # says in its own words what is wrong with a directory that is no dataset
+        if not (root / DATASET).is_file():
+            raise InputError(f"{root} is still growing; finish it with `scenegen render` first")
+        d = read_description(root / DATASET)
+        low, high = d["band_um"]
+        return cls(root, d["name"], d["version"], d["content_id"], (float(low), float(high)))
+
+    def samples(
+        self, split: str, recipe: TrainingRecipe, pairs: int = 0, *, keep: bool = False, stored: bool = False
+    ) -> Samples:
+        """A split as a recipe's network is shown it; with `stored`, frames as stored, whatever the recipe."""
+        redraw = recipe.training.noise == "redrawn" and not stored
+        redrawn = Redrawn.of(self.root, self.band_um, recipe.seed) if redraw else None
+        return Samples(self.root, split, recipe.inputs, pairs, keep, redrawn)
+
+    def camera(self) -> dict[str, Any]:
+        """Size and field of view of its frames, as checkpoints name them."""
+        sample = PairDataset(self.root, layers=("thermal",))[0]
+        rows, columns = sample["thermal"].shape
+        hfov = 2.0 * math.degrees(math.atan(0.5 * columns / float(sample["K"][0, 0])))
+        return {"width_px": columns, "height_px": rows, "hfov_deg": round(hfov, 6)}
+
+    def record(self) -> dict[str, str]:
+        """What checkpoints and reports say about it."""
+        return {"name": self.name, "version": self.version, "content_id": self.content_id}
