@@ -21,6 +21,8 @@ _FLORA = (
 _HEIGHT_M = {"palm": (5.0, 10.0), "olive": (3.5, 6.5)}
 _ANY_HEIGHT_M = (5.0, 11.0)
 _MOST_TREES, _MOST_SHRUBS = 230, 750
+_DETAIL = 0.65
+"""Share of the usual triangles of a tree: flights seldom come near them."""
 
 
 def build_greenery(shop: CoastWorkshop, rng: np.random.Generator) -> tuple[list[Part], dict[str, int]]:
@@ -57,7 +59,7 @@ def _trees(shop: CoastWorkshop, rng: np.random.Generator) -> tuple[list[Part], i
         mine = chosen[kind[chosen] == k]
         if len(mine):
             position = np.column_stack([xy[mine], shop.relief(xy[mine])])
-            parts += plant(name, position, height[mine], shop, rng)
+            parts += plant(name, position, height[mine], shop, rng, _DETAIL)
     return parts, len(chosen)
 
 

@@ -16,6 +16,8 @@ from scenegen.parts.vegetation.grove import grove
 
 _NEAREST_M, _REACH_M = 30.0, 4200.0
 _GROVES, _FARMS = 420, 150
+_CROWNS = 4
+"""Of a grove."""
 _STEEPEST = 0.3
 """Slope up to which a farm is built [m/m]."""
 
@@ -98,7 +100,7 @@ def _groves(foot: np.ndarray, size: np.ndarray, shop: CoastWorkshop, rng: np.ran
     leaves = np.array(shop.palette.variants("tree_crown"), np.int64)
     skins = leaves[rng.integers(len(leaves), size=len(foot))][:, None]
     owner = shop.builder.new_objects(len(foot)) + np.arange(len(foot))
-    template = grove(rng)
+    template = grove(rng, _CROWNS)
     scale = np.column_stack([size, size, rng.uniform(9.0, 15.0, len(foot))])
     return place(template, foot, rng.uniform(0.0, 2 * np.pi, len(foot)), scale, skins, owner)
 
