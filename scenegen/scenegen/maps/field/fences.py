@@ -17,7 +17,7 @@ from scenegen.parts.fixtures.nets import net
 from scenegen.parts.fixtures.strands import prisms, two_sided
 
 _BARRIER_M, _GATE_M = 1.1, 3.4
-_NET_HALF_M, _POLE_PITCH_M, _MESH_M, _CORD_M = 20.0, 5.0, 0.12, 0.003
+_NET_HALF_M, _POLE_PITCH_M, _MESH_M, _CORD_M = 20.0, 5.0, 0.145, 0.003
 
 
 def build_fences(

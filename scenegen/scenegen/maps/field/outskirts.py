@@ -20,7 +20,7 @@ from scenegen.parts.vegetation.foliage import leaf_fraction
 
 _WALLS = ("stucco_render", "brick_red", "stucco_render", "wood_siding")
 _ROOFS = ("clay_roof_tile", "clay_roof_tile", "slate_roof", "metal_roof_painted_mid")
-_FINE_M = 750.0
+_FINE_M = 480.0
 _DECIDUOUS = 0.7
 _BEYOND_M, _EDGE_M = 42.0, 230.0
 _CELLS_M = ((250.0, 600.0, 1200.0, 2200.0), (4.0, 16.0, 38.0, 60.0))
