@@ -16,7 +16,7 @@ from scenegen.maps.neighborhood.kerbside import Kerbside
 from scenegen.maps.neighborhood.parcels import Parcel
 from scenegen.maps.neighborhood.streets import CARRIAGEWAY_M, StreetPlan
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
-from scenegen.parts.vegetation.plant import crown_radius_m, hedges, plant, shrubs
+from scenegen.parts.vegetation.plant import crown_radius_m, hedges, plant, shrubs, triangles
 
 _BROAD = (("oak", (6.0, 13.0)), ("lime", (6.0, 13.0)), ("birch", (6.0, 12.0)), ("poplar", (9.0, 16.0)))
 _CONIFERS = (("spruce", (5.0, 14.0)), ("pine", (6.0, 13.0)))
@@ -25,8 +25,10 @@ _COMMONS = 2.6
 """How much denser trees stand on commons than in gardens."""
 _WIRE_GAP_M, _LOW_M = 0.9, 4.4
 _STREET_PITCH_M = (11.0, 19.0)
-_DETAIL, _SHRUBS = 0.5, 3
-"""Share of the usual triangles of a tree, since there are a thousand; shrubs tried per garden."""
+_TREE_TRIANGLES, _DETAIL = 330_000, (0.28, 0.6)
+"""Of all trees together, about; bounds for their share of the usual triangles. Rays pay most for leaves."""
+_SHRUBS = 5
+"""Tried per garden; low down they cost rays next to nothing."""
 _SHRUB_DEPTH_M = 0.15
 """How deep shrubs stand: beside a pad the mesh of the ground lies a hand below the relief."""
 
@@ -145,11 +147,12 @@ def build_greenery(
 ) -> list[Part]:
     """Trees, shrubs and hedges as parts."""
     raised = on_gardens(shop)
+    detail = float(np.clip(_TREE_TRIANGLES / max(triangles(trees.height_m), 1), *_DETAIL))
     parts: list[Part] = []
     for name in np.unique(trees.species):
         mine = trees.species == name
         position = np.column_stack([trees.xy[mine], raised.relief(trees.xy[mine])])
-        parts += plant(str(name), position, trees.height_m[mine], raised, rng, _DETAIL)
+        parts += plant(str(name), position, trees.height_m[mine], raised, rng, detail)
     rows = [line for line in lines if line.style == "hedge"]
     for height, width, corners in sorted({(r.height_m, r.width_m, len(r.points)) for r in rows}):
         alike = [r.points for r in rows if r.height_m == height and len(r.points) == corners]

@@ -51,7 +51,7 @@ class NeighborhoodKnobs(Section):
     shed_share: Share = (0.3, 0.6)
     """Share of gardens with a shed."""
 
-    trees_per_1000_m2: Annotated[Span, within(0.0, 16.0)] = (2.0, 3.2)
+    trees_per_1000_m2: Annotated[Span, within(0.0, 16.0)] = (1.6, 2.5)
     """Trees in gardens and commons."""
 
     conifer_share: Share = (0.1, 0.4)
@@ -81,7 +81,7 @@ class NeighborhoodKnobs(Section):
     people_per_100_lots: Annotated[Span, within(0.0, 200.0)] = (4.0, 18.0)
     """People who stand about in gardens."""
 
-    pole_share: Share = (0.5, 1.0)
+    pole_share: Share = (0.4, 0.85)
     """Share of streets with utility poles and overhead wires; the others have buried cables."""
 
     relief_m: Annotated[Span, within(0.0, 9.0)] = (1.5, 5.0)

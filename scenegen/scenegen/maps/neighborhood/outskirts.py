@@ -22,6 +22,8 @@ from scenegen.parts.vegetation.grove import grove
 
 _COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "grass_watered")
 _BELOW_GROUND_M = 1.2
+_CROWNS, _FULL_M = 6, 150.0
+"""Crowns of a mass of trees; how far beyond the neighborhood it has all of them."""
 _FINE_RING_M = 45.0
 """Width of the ring around the neighborhood in which the mesh is as fine as the relief."""
 
@@ -118,7 +120,7 @@ def far_objects(
     size = np.column_stack([length, width, rng.uniform(3.0, 6.0, count)])
     return [
         _plain_houses(centre[houses], size[houses], heading[houses], shop, rng),
-        _groves(centre[woods], length[woods], shop, rng),
+        *_groves(centre[woods], length[woods], half + _FULL_M, shop, rng),
     ]
 
 
@@ -162,11 +164,21 @@ def _plain_houses(
 
 
 def _groves(
-    centre: np.ndarray, width: np.ndarray, shop: NeighborhoodWorkshop, rng: np.random.Generator
-) -> Part:
+    centre: np.ndarray,
+    width: np.ndarray,
+    full_m: float,
+    shop: NeighborhoodWorkshop,
+    rng: np.random.Generator,
+) -> list[Part]:
+    """Masses of trees; those farther from the origin than `full_m` have half the crowns: rays graze dozens."""
     count = len(centre)
     skin = np.array([[shop.palette.pick("tree_crown", rng)] for _ in range(count)], np.int64).reshape(-1, 1)
     scale = np.column_stack([width, width, rng.uniform(8.0, 15.0, count)])
     position = np.column_stack([centre, shop.relief(centre)])
     owner = shop.builder.new_objects(count) + np.arange(count)
-    return place(grove(rng), position, rng.uniform(0.0, 2 * np.pi, count), scale, skin, owner)
+    heading = rng.uniform(0.0, 2 * np.pi, count)
+    near = np.linalg.norm(centre, axis=1) < full_m
+    return [
+        place(grove(rng, crowns), position[k], heading[k], scale[k], skin[k], owner[k])
+        for crowns, k in ((_CROWNS, near), (_CROWNS // 2, ~near))
+    ]

@@ -20,7 +20,7 @@ _SITES = np.concatenate([UP, ring(3, 22.0)])
 
 
 def grove(rng: np.random.Generator, crowns: int = 6) -> Template:
-    """Trees in a circle of diameter 1, up to height 1, some 150 triangles; one slot, four sites.
+    """Trees in a circle of diameter 1, up to height 1, 35 triangles a crown; one slot, four sites.
 
     Parameters
     ----------
