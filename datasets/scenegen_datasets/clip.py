@@ -36,11 +36,11 @@ class ClipRecord:
         What turns counts into radiance and how the noise was drawn; must name ``low_radiance``, ``high_radiance``
         [W m^-2 sr^-1] and ``counts``, the same in all clips of a dataset.
     speed_mps, spacing_m, clearance_m : float
-        Of the flight: constant speed, distance between frames, smallest proven distance to the mesh.
+        Of the flight: mean speed, distance between frames along the way, smallest proven distance to the mesh.
     rejected : int
         Flights that were drawn and rejected before this one.
     extra : mapping
-        Further plain facts (style of the flight, objects in the world, ...).
+        Further plain facts (style of the flight and why others were rejected, objects in the world, ...).
     """
 
     job: ClipJob

@@ -44,7 +44,13 @@ _CONTEXT: dict[str, Any] = {
     "transform": "cr:transform",
 }
 
-_FORMATS = {"png": "image/png", "tiff": "image/tiff", "exr": "image/x-exr", "json": "application/json"}
+_FORMATS = {
+    "png": "image/png",
+    "tiff": "image/tiff",
+    "exr": "image/x-exr",
+    "npy": "application/x-npy",
+    "json": "application/json",
+}
 _IMAGES = ("png", "tiff")
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -52,12 +52,18 @@ class FrameMeta:
         Intrinsic matrix [px].
     sensor : mapping
         State of the camera at this frame (plain numbers), stored in the JSON member.
+    motion : mapping
+        Further entries of the JSON member: where the camera was and will be, how fast it moves, what it is out for.
+    imu : float64 (samples, columns) or None
+        The layer of that name (`scenegen_datasets.layers.IMU_COLUMNS`).
     """
 
     time_s: float
     world_from_camera: Float64[np.ndarray, "4 4"]
     K: Float64[np.ndarray, "3 3"]
     sensor: Mapping[str, float | int]
+    motion: Mapping[str, Any] = field(default_factory=dict)
+    imu: Float64[np.ndarray, "samples columns"] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,6 +123,8 @@ def encode_frame(
     """
     groups = layers_by_member(layers)
     arrays = _arrays(key, frame, reading)
+    if meta.imu is not None:
+        arrays["imu"] = meta.imu
     _guard(key, arrays, [layer.name for group in groups.values() for layer in group])
     members = [
         Member(
@@ -147,6 +155,7 @@ def frame_json(key: str, meta: FrameMeta) -> dict[str, Any]:
         "world_from_camera": meta.world_from_camera.tolist(),
         "K": meta.K.tolist(),
         "sensor": dict(meta.sensor),
+        **meta.motion,
     }
 
 

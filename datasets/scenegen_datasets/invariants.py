@@ -29,6 +29,7 @@ def violations(arrays: Mapping[str, NDArray[Any]]) -> list[str]:
         "flow": _flow,
         "flow_back": _flow,
         "normal": _normal,
+        "imu": _imu,
     }
     found = []
     for name, check in checks.items():
@@ -111,3 +112,10 @@ def _normal(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
     length = np.einsum("...k,...k->...", arrays[name], arrays[name])
     if not ((np.abs(length - 1) < 1e-3) | (length == 0)).all():
         yield "not of unit length"
+
+
+def _imu(arrays: Mapping[str, NDArray[Any]], name: str) -> Iterator[str]:
+    if not np.isfinite(arrays[name]).all():
+        yield "not finite"
+    if (np.diff(arrays[name][:, 0]) <= 0).any():
+        yield "time does not rise"

@@ -10,7 +10,7 @@ from scenegen.foundation.errors import InputError, nearest
 
 @dataclass(frozen=True)
 class Layer:
-    """One array per frame.
+    """One array per frame; all but ``imu`` share the frame's pixel grid.
 
     Attributes
     ----------
@@ -19,7 +19,7 @@ class Layer:
     member : str
         Suffix of the member that holds it.
     channels : tuple of str
-        EXR channels; empty where the member is a plain image.
+        EXR channels or columns; empty where the member is a plain image.
     dtype : str
         Type of the array in memory, and of the digest.
     stored : str
@@ -38,6 +38,9 @@ class Layer:
 
 
 _TRUTH, _BACK = "truth.exr", "flow_back.exr"
+IMU_MEMBER = "imu.npy"
+IMU_COLUMNS = ("time", "force_x", "force_y", "force_z", "rate_x", "rate_y", "rate_z")
+"""Columns of the inertial table; with noise, six more follow: the same forces and rates as measured."""
 
 LAYERS: dict[str, Layer] = {
     layer.name: layer
@@ -82,11 +85,29 @@ LAYERS: dict[str, Layer] = {
             "1",
             "camera frame, facing it; sky 0",
         ),
+        Layer(
+            "imu",
+            IMU_MEMBER,
+            IMU_COLUMNS,
+            "float64",
+            "float64",
+            "s, m s^-2, rad s^-1",
+            "specific force and body rates from this frame to the next, 200 Hz",
+        ),
     )
 }
 """All layers by name, in the order of their members."""
 
-MEMBERS = ("thermal.png", "depth.tiff", "flow.exr", "truth.exr", "flow_back.exr", "normal.exr", "json")
+MEMBERS = (
+    "thermal.png",
+    "depth.tiff",
+    "flow.exr",
+    "truth.exr",
+    "flow_back.exr",
+    "normal.exr",
+    IMU_MEMBER,
+    "json",
+)
 """Suffixes of a frame's members in the order they stand in the shard."""
 
 UNCOMPRESSED = ("flow.exr",)
@@ -106,7 +127,7 @@ DEFAULT_LAYERS: tuple[str, ...] = (
     "instance",
     "material",
 )
-"""What is written unless the recipe says otherwise; ``flow_back``, ``covisible_back`` and ``normal`` on request."""
+"""What is written unless the recipe says otherwise; all other layers on request."""
 
 _MAX_PIXELS = 1 << 24
 

@@ -189,7 +189,12 @@ def _stacked(frames: list[Sample]) -> Sample:
     joined: Sample = {}
     for name, value in frames[0].items():
         values = [frame[name] for frame in frames]
-        joined[name] = value if name in same else values if isinstance(value, str) else np.stack(values)
+        if name in same:
+            joined[name] = value
+        elif isinstance(value, str) or name == "imu":  # frames are unequally long apart: so are their tables
+            joined[name] = values
+        else:
+            joined[name] = np.stack(values)
     return joined
 
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenegen.foundation.errors import CorruptFrameError
-from scenegen_datasets.codecs import exr, png, tiff
-from scenegen_datasets.layers import UNCOMPRESSED, Layer
+from scenegen_datasets.codecs import exr, npy, png, tiff
+from scenegen_datasets.layers import IMU_COLUMNS, UNCOMPRESSED, Layer
 
 Arrays = Mapping[str, NDArray[Any]]
 """Layer name to array."""
@@ -32,6 +32,8 @@ def encode_member(suffix: str, layers: Iterable[Layer], arrays: Arrays) -> bytes
         return png.encode(arrays[chosen[0].name])
     if suffix.endswith(".tiff"):
         return tiff.encode(arrays[chosen[0].name])
+    if suffix.endswith(".npy"):
+        return npy.encode(arrays[chosen[0].name])
     channels: dict[str, NDArray[Any]] = {}
     for layer in chosen:
         planes = _planes(arrays[layer.name])
@@ -66,6 +68,8 @@ def decode_member(
         return {chosen[0].name: png.decode(data, shape)}
     if suffix.endswith(".tiff"):
         return {chosen[0].name: tiff.decode(data, shape)}
+    if suffix.endswith(".npy"):
+        return {chosen[0].name: npy.decode(data, (len(IMU_COLUMNS), 2 * len(IMU_COLUMNS) - 1))}
     stored = {c: np.dtype(layer.stored) for layer in chosen for c in layer.channels}
     planes = exr.decode(data, shape, stored)
     return {layer.name: _narrowed([planes[c] for c in layer.channels], layer) for layer in chosen}

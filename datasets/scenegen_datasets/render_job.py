@@ -25,6 +25,7 @@ BYTES_PER_PIXEL = {
     "truth.exr": 7.7,
     "flow_back.exr": 8.4,
     "normal.exr": 10.0,
+    "imu.npy": 0.0,  # some kilobytes, whatever the size of the picture
 }
 """Size of each member of a frame on disk; measured on city flights, on the high side."""
 

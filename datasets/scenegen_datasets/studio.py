@@ -132,8 +132,10 @@ class Studio:
                 with watch("sense"):
                     reading = detector.read(frame.radiance, time_s)
                 with watch("encode"):
+                    saturated = {"saturated": reading.saturated}
+                    imu = flight.imu.between(time_s, float(flight.time_s[k + 2])) if "imu" in layers else None
                     meta = FrameMeta(
-                        time_s, poses[k + 1], self._camera.matrix, {"saturated": reading.saturated}
+                        time_s, poses[k + 1], self._camera.matrix, saturated, _motion(flight, k + 1), imu
                     )
                     encoded = encode_frame(job.key(k), frame, reading, meta, layers)
                 with watch("write"):
@@ -172,8 +174,27 @@ class Studio:
             spacing_m=self._recipe.flight.spacing_m,
             clearance_m=flight.clearance_m,
             rejected=flight.rejected,
-            extra={"world": dict(stage.world.counts), "air_K": state.atmosphere.air_K},
+            extra={
+                "world": dict(stage.world.counts),
+                "air_K": state.atmosphere.air_K,
+                "style": flight.style,
+                "rejections": dict(flight.rejections),
+                "wind_mps": list(flight.wind_mps),
+                "body_from_camera": flight.body_from_camera.tolist(),
+            },
         )
+
+
+def _motion(flight: Trajectory, k: int) -> dict[str, Any]:
+    """What the JSON member says about the way of the camera past pose `k`."""
+    return {
+        "style": flight.style,
+        "velocity_mps": flight.velocity_mps[k].tolist(),
+        "previous_time_s": float(flight.time_s[k - 1]),
+        "next_time_s": float(flight.time_s[k + 1]),
+        "previous_from_camera": flight.relative(k - 1, k).tolist(),
+        "next_from_camera": flight.relative(k + 1, k).tolist(),
+    }
 
 
 def worker(setup: Mapping[str, Any]) -> Callable[[dict[str, Any], Told], dict[str, Any]]:

@@ -60,3 +60,12 @@ class Trajectory:
     rejections: tuple[tuple[str, int], ...]
     motion: Motion = field(repr=False)
     zero_s: float
+
+    def relative(self, to: int, of: int) -> Float64[np.ndarray, "4 4"]:
+        """``to_from_of``: maps camera points of pose `of` to camera points of pose `to`."""
+        seen, seeing = self.world_from_camera[of], self.world_from_camera[to]
+        turn = seeing[:3, :3].T
+        pose = np.eye(4)
+        pose[:3, :3] = turn @ seen[:3, :3]
+        pose[:3, 3] = turn @ (seen[:3, 3] - seeing[:3, 3])
+        return pose

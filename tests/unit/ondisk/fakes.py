@@ -66,7 +66,15 @@ def reading(rng: np.random.Generator, shape: tuple[int, int] = SHAPE) -> Reading
 def meta(k: int) -> FrameMeta:
     pose = np.eye(4)
     pose[:3, 3] = (0.1 * k, 1.0, 20.0)
-    return FrameMeta(0.05 * k, pose, K, {"fpa_temperature_K": 303.25, "frame_of_unit": k})
+    motion = {"style": "survey", "velocity_mps": [2.0, 0.0, 0.1 * k]}
+    return FrameMeta(0.05 * k, pose, K, {"fpa_temperature_K": 303.25, "frame_of_unit": k}, motion, imu(k))
+
+
+def imu(k: int, columns: int = 7) -> np.ndarray:
+    """Samples of 200 Hz until the next frame, of which there are ten, or nine, or eleven ..."""
+    table = np.random.default_rng(k).normal(size=(10 + (k % 3 - 1), columns))
+    table[:, 0] = 0.05 * k + 0.005 * np.arange(len(table))
+    return table
 
 
 def encoded(

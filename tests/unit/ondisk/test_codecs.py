@@ -14,7 +14,7 @@ import pytest
 from PIL import Image
 
 from scenegen.foundation.errors import CorruptFrameError
-from scenegen_datasets.codecs import exr, png, tiff
+from scenegen_datasets.codecs import exr, npy, png, tiff
 from scenegen_datasets.layers import LAYERS, layers_by_member
 from scenegen_datasets.pixels import array_digest, decode_member, encode_member
 
@@ -86,8 +86,9 @@ def test_exr_is_exact_and_carries_units(shape: tuple[int, int]) -> None:
 def test_every_layer_survives_its_member(fakes: ModuleType) -> None:
     rng = np.random.default_rng(0)
     frame, reading = fakes.frame(rng, extra=True), fakes.reading(rng)
-    arrays = {name: getattr(frame, name) for name in LAYERS if name != "thermal"} | {
-        "thermal": reading.counts
+    arrays = {name: getattr(frame, name) for name in LAYERS if name not in ("thermal", "imu")} | {
+        "thermal": reading.counts,
+        "imu": fakes.imu(2),
     }
     seen = set()
     for suffix, group in layers_by_member(LAYERS).items():
@@ -129,6 +130,26 @@ def test_a_png_with_foreign_chunks_is_refused() -> None:
     extra = data[:33] + chunk(b"zTXt", b"k\0\0" + zlib.compress(bytes(1 << 20))) + data[33:]
     with pytest.raises(CorruptFrameError, match="other chunks"):
         png.decode(extra, (8, 8))
+
+
+@pytest.mark.parametrize("columns", [7, 13])
+@pytest.mark.parametrize("rows", [0, 1, 333])
+def test_tables_are_plain_npy_files(rows: int, columns: int) -> None:
+    table = RNG.normal(size=(rows, columns))
+    data = npy.encode(table)
+    back = np.load(io.BytesIO(data), allow_pickle=False)
+    written = io.BytesIO()
+    np.lib.format.write_array(written, table, version=(1, 0))
+    assert data == written.getvalue()
+    for read in (back, npy.decode(data, (7, 13))):
+        assert read.dtype == np.float64
+        assert read.shape == table.shape
+        assert read.tobytes() == table.tobytes()
+    for bad in (data[:-1], data + b"0", data[:40], b"", data.replace(b"<f8", b"|O8")):
+        with pytest.raises(CorruptFrameError, match="not a table"):
+            npy.decode(bad, (7, 13))
+    with pytest.raises(CorruptFrameError, match="not a table"):
+        npy.decode(data, (5,))
 
 
 @pytest.mark.parametrize("tag", [256, 257, 258, 259, 277, 278, 279, 317, 339])

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 import pickle
 import subprocess
 import sys
+import tarfile
 import time
 from pathlib import Path
 from types import ModuleType
@@ -63,6 +65,19 @@ def test_layers_on_request_come_back(fakes: ModuleType, tmp_path: Path) -> None:
         assert sample[name].tobytes() == np.ascontiguousarray(getattr(frames[1][0], name)).tobytes()
     with pytest.raises(InputError, match="no layer 'depth'"):
         PairDataset(root)
+
+
+def test_inertial_samples_come_back_and_sequences_keep_them_apart(fakes: ModuleType, tmp_path: Path) -> None:
+    layers = ("thermal", "depth", "imu")
+    root = fakes.make(tmp_path / "d", 1, layers=layers)
+    assert PairDataset(root, layers=layers)[1]["imu"].tobytes() == fakes.imu(2).tobytes()
+    both = PairDataset(root, layers=layers, seq_length=2)[0]
+    assert [len(table) for table in both["imu"]] == [10, 11]
+    assert both["depth"].shape == (2, *fakes.SHAPE)
+    with tarfile.open(root / "shards/train/city-00000/000.tar") as tar:
+        stored = tar.extractfile("city-00000-000-0001.imu.npy")
+        assert stored is not None
+        np.testing.assert_array_equal(np.load(io.BytesIO(stored.read())), fakes.imu(1))
 
 
 def test_indices_behave_like_those_of_a_list(pristine: Path) -> None:

@@ -364,7 +364,8 @@ def test_rows_and_receipts_tell_the_same(pristine: Path, fakes: ModuleType) -> N
 def arrays(fakes: ModuleType) -> dict[str, np.ndarray]:
     rng = np.random.default_rng(3)
     frame, reading = fakes.frame(rng, extra=True), fakes.reading(rng)
-    return {n: getattr(frame, n).copy() for n in LAYERS if n != "thermal"} | {"thermal": reading.counts}
+    pictures = {n: getattr(frame, n).copy() for n in LAYERS if n not in ("thermal", "imu")}
+    return pictures | {"thermal": reading.counts, "imu": fakes.imu(3)}
 
 
 def put(name: str, at: tuple[int, ...], value: float) -> Callable[[dict[str, np.ndarray]], None]:
@@ -399,6 +400,8 @@ def put(name: str, at: tuple[int, ...], value: float) -> Callable[[dict[str, np.
         (put("flow", (5, 5, 0), 12.0), "outside the other image"),
         (put("flow", (5, 5, 1), np.nan), "outside the other image"),
         (put("normal", (5, 5, 2), 3.0), "unit length"),
+        (put("imu", (4, 2), np.nan), "imu: not finite"),
+        (put("imu", (4, 0), 0.0), "imu: time does not rise"),
     ],
 )
 def test_each_invariant_has_teeth(
