@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Bool, Float64, Int64
+from jaxtyping import Bool, Float64, Int32, Int64
 from scipy.ndimage import label
 
 from scenegen.foundation.errors import RejectedDrawError
@@ -125,7 +125,7 @@ class _Ways:
     def __init__(self, airspace: Airspace, knobs: MissionKnobs) -> None:
         self._airspace = airspace
         middle, top = 0.5 * sum(knobs.height_m), knobs.height_m[1] + knobs.climb_m
-        self._labels = []
+        self._labels: list[Int32[np.ndarray, "rows columns"]] = []
         for height in (middle, top):
             free = airspace.room(height, 1.0) > _LANE_CELLS
             self._labels.append(label(free)[0])
@@ -135,9 +135,17 @@ class _Ways:
     ) -> Bool[np.ndarray, "n"]:
         joined = np.zeros(len(start), np.bool_)
         for labels in self._labels:
-            a, b = (self._airspace.look_up(labels, place[:, :2]) for place in (start, goal))
+            a, b = (self._label(labels, place) for place in (start, goal))
             joined |= (a == b) & (a > 0)
         return joined
+
+    def _label(
+        self, labels: Int32[np.ndarray, "rows columns"], place: Float64[np.ndarray, "n 3"]
+    ) -> Int32[np.ndarray, "n"]:
+        """Way each place of the flight box lies on; 0 for none."""
+        cell = np.floor((place[:, :2] - self._airspace.low[:2]) / self._airspace.cell_m).astype(np.int64)
+        column, row = np.clip(cell, 0, np.array(labels.shape[::-1]) - 1).T
+        return np.asarray(labels[row, column])
 
 
 def _draw(

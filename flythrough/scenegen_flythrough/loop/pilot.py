@@ -7,7 +7,7 @@ flights that have ended are no longer among them, so a pilot that remembers anyt
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float32, Float64, Int64, UInt16
@@ -109,6 +109,7 @@ class Decision:
     latency_s: Float64[np.ndarray, "n"] | None = None
 
 
+@runtime_checkable
 class Pilot(Protocol):
     """Flies drones by what they see."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float32, Int64
@@ -15,6 +15,7 @@ BLIND_DEPTH_M = 100.0
 """What the blind pilot takes every pixel for: nothing near, anywhere."""
 
 
+@runtime_checkable
 class DepthSource(Protocol):
     """Where a pilot's depth comes from."""
 

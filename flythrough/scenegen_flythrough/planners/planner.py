@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 from jaxtyping import Float32
@@ -14,6 +14,7 @@ Memory = Any
 """Whatever one planner keeps of one flight."""
 
 
+@runtime_checkable
 class Planner(Protocol):
     """Turns depth into commands. Everything it remembers of a flight lies in that flight's memory."""
 

@@ -6,7 +6,6 @@ import importlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
 
 from scenegen.foundation.errors import InputError, nearest
 from scenegen_flythrough.loop.knobs import LoopKnobs
@@ -65,10 +64,9 @@ def planner(name: str, knobs: LoopKnobs) -> Planner:
         There is none of this name, or what the module offers is no planner.
     """
     if ":" in name:
-        made: Any = plugged_in(name, "planner")(knobs)
-        missing = [part for part in ("name", "memory", "plan") if not hasattr(made, part)]
-        if missing:
-            raise InputError(f"planner '{name}' has no {', '.join(missing)}; see planners/planner.py")
+        made = plugged_in(name, "planner")(knobs)
+        if not isinstance(made, Planner):
+            raise InputError(f"'{name}' made no planner: it needs a name, memory() and plan()")
         return made  # type: ignore[no-any-return]
     if name not in PLANNERS:
         raise InputError(f"unknown planner '{name}'{nearest(name, PLANNERS)}; or give module:attribute")
