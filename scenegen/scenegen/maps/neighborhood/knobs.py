@@ -72,7 +72,7 @@ class NeighborhoodKnobs(Section):
     parked_cars_per_100_m: Annotated[Span, within(0.0, 14.0)] = (0.8, 2.5)
     """Cars parked along 100 m of kerb."""
 
-    moving_cars_per_km: Annotated[Span, within(0.0, 30.0)] = (1.5, 5.0)
+    moving_cars_per_km: Annotated[Span, within(0.0, 30.0)] = (3.0, 6.5)
     """Cars and vans that drive, on a kilometre of street."""
 
     walkers_per_100_m: Annotated[Span, within(0.0, 10.0)] = (0.1, 0.5)
