@@ -149,6 +149,11 @@ class DepthMeter:
         self._ranges = [_Sums() for _ in cuts]
         self._skipped = self._missing = 0
 
+    @property
+    def pixels(self) -> int:
+        """Valid pixels so far; without any there is no `report`."""
+        return self._pooled.count
+
     def add(
         self, estimate_m: Float[np.ndarray, "height width"], truth_m: Float[np.ndarray, "rows columns"]
     ) -> DepthScores | None:

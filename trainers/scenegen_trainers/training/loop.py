@@ -139,7 +139,7 @@ class _School:
                 log.write()
                 if last:
                     self._graduate(done)
-                write_state(self.out, self.identity, done, self.learner.state())
+                write_state(self.out, self.identity, done, {} if last else self.learner.state())
             watch(Taught(done, knobs.steps, seen))
         self.fabric.barrier()
 

@@ -48,6 +48,18 @@ class Machine:
         # Two paddings have no deterministic gradient on GPUs; there a warning says so instead of an error.
         torch.use_deterministic_algorithms(True, warn_only=self.accelerator != "cpu")
 
+    def device(self) -> str:
+        """Where a single process computes.
+
+        Raises
+        ------
+        InputError
+            If a GPU is asked for and none is there.
+        """
+        if self.accelerator == "gpu" and not torch.cuda.is_available():
+            raise InputError("no GPU that torch can use; take --accelerator cpu")
+        return "cuda" if self.accelerator == "gpu" else "cpu"
+
     def fabric(self, out: Path) -> Any:
         """Lightning Fabric on these devices.
 

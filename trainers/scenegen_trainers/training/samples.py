@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from copy import copy
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -86,7 +87,7 @@ class Samples:
                 f"{root}: its split '{split}' has no pairs; worlds 1 and 2 of each map become val and test, "
                 "so render at least three worlds of each (more --pairs)"
             )
-        self.index = _spread(len(self._dataset), pairs)
+        self.index = spread(len(self._dataset), pairs)
         self._kept: dict[tuple[int, bool], Shown] | None = {} if keep and redrawn is None else None
 
     def __len__(self) -> int:
@@ -101,6 +102,13 @@ class Samples:
             for mirror in (False, True):
                 self._kept[draw.index, mirror] = _shown(seen, depth, mirror, self.inputs)
         return self._kept[key]
+
+    def only(self, index: Sequence[int]) -> Samples:
+        """Some of the split, by their index in it."""
+        some = copy(self)
+        some.index = np.asarray(index, np.int64)
+        some._kept = None
+        return some
 
     def raw(self, position: int) -> dict[str, Any]:
         """The dataset's own sample, for those who need more than a network may know."""
@@ -182,7 +190,8 @@ def _opened(root: Path, split: str, inputs: InputKnobs, redrawn: bool) -> PairDa
         raise
 
 
-def _spread(count: int, wanted: int) -> Int64[np.ndarray, "samples"]:
+def spread(count: int, wanted: int) -> Int64[np.ndarray, "samples"]:
+    """So many of `count` positions, evenly spread; all for 0."""
     if wanted == 0 or wanted >= count:
         return np.arange(count)
     return np.asarray(np.linspace(0, count - 1, wanted).round(), np.int64)

@@ -25,6 +25,8 @@ class TrainingData:
     root : Path
     name, version, content_id : str
     band_um : (float, float)
+    layers : tuple of str
+        What it stores.
     """
 
     root: Path
@@ -32,6 +34,7 @@ class TrainingData:
     version: str
     content_id: str
     band_um: tuple[float, float]
+    layers: tuple[str, ...]
 
     @classmethod
     def at(cls, root: Path) -> TrainingData:
@@ -49,7 +52,8 @@ class TrainingData:
             raise InputError(f"{root} is still growing; finish it with `scenegen render` first")
         d = read_description(root / DATASET)
         low, high = d["band_um"]
-        return cls(root, d["name"], d["version"], d["content_id"], (float(low), float(high)))
+        layers = tuple(layer["name"] for layer in d["layers"])
+        return cls(root, d["name"], d["version"], d["content_id"], (float(low), float(high)), layers)
 
     def samples(
         self, split: str, recipe: TrainingRecipe, pairs: int = 0, *, keep: bool = False, stored: bool = False

@@ -1,0 +1,76 @@
+"""``scenegen evaluate``: judge a trained network on a split of a dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
+
+import tyro
+
+from scenegen_cli.console import note, say, say_json, table
+from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.teaching import Steps, need_torch
+
+
+@dataclass(frozen=True)
+class Evaluate:
+    """Judge a network: scores with intervals, by distance, map, hour and class, beside trivial answers."""
+
+    checkpoint: Annotated[Path, tyro.conf.Positional]
+    """model.pt of `scenegen train`."""
+    dataset: Annotated[Path, tyro.conf.Positional]
+    """Directory of a finished dataset, of the camera the network was trained on."""
+    split: Literal["train", "val", "test"] = "test"
+    """Judged on."""
+    pairs: int = 0
+    """So many, evenly spread; 0 takes all."""
+    out: Path | None = None
+    """Directory of the report and the pictures; by default evaluation-SPLIT beside the checkpoint."""
+    accelerator: Literal["cpu", "gpu"] = "cpu"
+    """On what."""
+    threads: int = 1
+    """Of the CPU."""
+    json: bool = False
+    """Report as JSON."""
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run the subcommand; returns the exit code."""
+    try:
+        command = parse(Evaluate, "evaluate", arguments)
+    except HelpShown:
+        return 0
+    need_torch()
+    from scenegen_trainers.evaluation.evaluate import evaluate
+    from scenegen_trainers.evaluation.report import as_json, write_report
+    from scenegen_trainers.models.checkpoint import read_checkpoint
+    from scenegen_trainers.training.machine import Machine
+    from scenegen_trainers.training.source import TrainingData
+
+    machine = Machine(command.accelerator, threads=command.threads)
+    machine.settle()
+    checkpoint, data = read_checkpoint(command.checkpoint), TrainingData.at(command.dataset)
+    found = evaluate(
+        checkpoint,
+        data,
+        command.split,
+        command.pairs,
+        device=machine.device(),
+        watch=Steps("judged", quiet=command.json),
+    )
+    out = command.out or command.checkpoint.parent / f"evaluation-{command.split}"
+    paths = write_report(found, checkpoint, data, out)
+    if command.json:
+        say_json(as_json(found))
+        return 0
+    rows = [("network", found.report), *found.baselines.items()]
+    lines = [("", "RMSE [m]", "Rel", "delta1", "delta2", "delta3")]
+    for name, report in rows:
+        s = report.pooled
+        lines.append((name, f"{s.rmse_m:.3f}", *(f"{x:.3f}" for x in (s.rel, *s.delta))))  # type: ignore[arg-type]
+    say(table(lines))
+    for path in paths:
+        note(str(path))
+    return 0

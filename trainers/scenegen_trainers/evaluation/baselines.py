@@ -1,0 +1,63 @@
+"""Answers that need no image: what a network has to beat before anybody calls it one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from jaxtyping import Float32, Float64
+
+from scenegen_datasets.loader import PairDataset
+
+
+@dataclass(frozen=True, eq=False)
+class Baselines:
+    """What the training split looks like on average, with depth capped.
+
+    Attributes
+    ----------
+    constant_m : float
+        Median of all pixels below the cap [m].
+    row_m : float64 (rows,)
+        Mean of each image row over pixels below the cap [m]; where a row has none, the cap.
+    """
+
+    constant_m: float
+    row_m: Float64[np.ndarray, "rows"]
+
+    def answers(self, shape: tuple[int, int]) -> dict[str, Float32[np.ndarray, "rows columns"]]:
+        """Each baseline's answer, the same to every image."""
+        rows = np.broadcast_to(self.row_m[:, None], shape)
+        return {
+            "constant": np.full(shape, self.constant_m, np.float32),
+            "row mean": np.asarray(rows, np.float32),
+        }
+
+
+def fit_baselines(training: PairDataset, cap_m: float) -> Baselines:
+    """Look at the depth of a training split.
+
+    Parameters
+    ----------
+    training : PairDataset
+        With layer depth; at least one pair.
+    cap_m : float
+        Pixels at or beyond it, sky included, are left out, as the scores leave them out [m].
+    """
+    sums = counts = np.zeros(len(training[0]["depth"]))
+    histogram = np.zeros(_BINS, np.int64)
+    for sample in training:
+        depth = sample["depth"]
+        near = depth < cap_m
+        sums = sums + np.where(near, depth, 0.0).sum(axis=1, dtype=np.float64)
+        counts = counts + near.sum(axis=1)
+        histogram += np.histogram(depth[near], _BINS, (0.0, cap_m))[0]
+    rows = np.where(counts > 0, sums / np.maximum(counts, 1.0), cap_m)
+    if not counts.any():
+        return Baselines(cap_m, rows)
+    middle = int(np.searchsorted(np.cumsum(histogram), 0.5 * histogram.sum()))
+    return Baselines((middle + 0.5) * cap_m / _BINS, rows)
+
+
+_BINS = 4000
+"""Steps of the median: 2.5 cm at a cap of 100 m."""

@@ -1,0 +1,60 @@
+"""One run of a table in a process of its own: train, judge, write the scores."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from scenegen.foundation.atomic import write_atomic
+from scenegen.foundation.canonical import pretty
+from scenegen_trainers.evaluation.bootstrap import named
+from scenegen_trainers.evaluation.evaluate import evaluate, judge_baselines
+from scenegen_trainers.evaluation.report import report_json
+from scenegen_trainers.metrics import ValidDepth
+from scenegen_trainers.models.checkpoint import read_checkpoint
+from scenegen_trainers.tables.names import SCORES
+from scenegen_trainers.training.loop import Taught, train
+from scenegen_trainers.training.machine import Machine
+from scenegen_trainers.training.recipe import TrainingRecipe
+from scenegen_trainers.training.source import TrainingData
+
+_SAID_EVERY = 50
+
+
+def worker(setup: Mapping[str, Any]) -> Callable[..., dict[str, Any]]:
+    """What a worker does with each run it is given."""
+    data, split = TrainingData.at(Path(setup["data"])), str(setup["split"])
+
+    def handle(task: Mapping[str, Any], say: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
+        recipe = TrainingRecipe.model_validate(task["recipe"])
+        out = Path(task["out"])
+
+        def watch(taught: Taught) -> None:
+            if taught.step % _SAID_EVERY == 0:
+                say({"said": f"step {taught.step} of {taught.steps}"})
+
+        model = train(recipe, data, out, Machine(), watch)
+        say({"said": "judged"})
+        write_atomic(out / SCORES, pretty(_scores(model, data, split)))
+        return {}
+
+    return handle
+
+
+def _scores(model: Path, data: TrainingData, split: str) -> dict[str, Any]:
+    evaluation = evaluate(read_checkpoint(model), data, split, thorough=False)
+    valid = ValidDepth(furthest_m=evaluation.cap_m)
+    report = report_json(evaluation.report)
+    return {
+        "dataset": dict(evaluation.dataset),
+        "pooled": report["pooled"],
+        "per_image": report["per_image"],
+        "pooled_aligned": report["pooled_aligned"],
+        "painted": named(evaluation.painted.pooled),
+        "by_range": report["by_range"],
+        "interval_95": {name: list(span) for name, span in evaluation.interval.items()},
+        "pixels": report["pixels"],
+        "images": report["images"],
+        "baselines": {n: named(r.pooled) for n, r in judge_baselines(data, split, 0, valid).items()},
+    }
