@@ -40,7 +40,7 @@ class Climber:
 
 
 class Faulty(Climber):
-    """Behaves, but for three flights: raises, gives no number, and never gets going."""
+    """Behaves, but for three flights: raises, flies at no number, turns to infinity."""
 
     name = "faulty"
 
@@ -49,15 +49,8 @@ class Faulty(Climber):
             raise ZeroDivisionError("divided by zero & lost")
         decision = super().act(seen)
         decision.command.velocity_mps[seen.flight % 4 == 2] = np.nan
+        decision.command.yaw_rad[seen.flight % 4 == 3] = np.inf
         return decision
-
-
-class Shapeless(Climber):
-    """Answers for one flight too few."""
-
-    def act(self, seen: Observation) -> Decision:
-        decision = super().act(seen)
-        return Decision(Command(decision.command.velocity_mps[1:], decision.command.yaw_rad[1:]))
 
 
 class Unwilling(Climber):
