@@ -92,7 +92,7 @@ class Place:
             marks.append(time.process_time())
             arena.advance(answer)
             marks.append(time.process_time())
-            tally.cpu_s.update(zip(("depth", "pilot", "arena"), np.diff(marks).tolist(), strict=True))
+            tally.cpu_s.update(dict(zip(("depth", "pilot", "arena"), np.diff(marks).tolist(), strict=True)))
             for outcome in arena.outcomes():
                 if outcome.flight in flying:
                     pose = poses[np.flatnonzero(flying == outcome.flight)[0]]

@@ -135,18 +135,20 @@ def _pooled(depth: Float32[np.ndarray, "n rows columns"], pool: int) -> Float32[
 
 
 class Seen:
-    """The sights one drone keeps: the newest, and a few of those before, each taken from another place or heading."""
+    """The sights one drone keeps: the fresh ones, and a few before, each taken from another place or heading."""
 
-    def __init__(self, keep: int, spacing_m: float, turn_rad: float) -> None:
+    def __init__(self, keep: int, spacing_m: float, turn_rad: float, fresh_s: float) -> None:
         self._keep, self._spacing_m, self._turn_cosine = keep, spacing_m, float(np.cos(turn_rad))
+        self._fresh_s = fresh_s
         self._sights: list[Sight] = []
 
     def add(self, sight: Sight) -> None:
-        """Take in the newest; the one before it stays only if it differs from the one before that."""
+        """Take in the newest. What is no longer fresh stays only if it differs from the one before it."""
         kept = self._sights
-        if len(kept) >= 2 and not self._differs(kept[-1], kept[-2]):
-            kept.pop()
         kept.append(sight)
+        old = sum(s.time_s < sight.time_s - self._fresh_s for s in kept)
+        if old >= 2 and not self._differs(kept[old - 1], kept[old - 2]):
+            kept.pop(old - 1)
         if len(kept) > self._keep:
             kept.pop(0)
 

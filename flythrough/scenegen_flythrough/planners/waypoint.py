@@ -27,13 +27,19 @@ _MARGIN_M = 0.2
 _NEAR_RADII = 2.4
 """A ball nearer than this many radii does not fit into the picture."""
 _SPACING_M, _TURN_DEG, _KEEP = 1.0, 20.0, 10
-"""Pictures kept: one a metre or 20 degrees, ten of them."""
+"""Pictures kept: one a metre or 20 degrees, ten of them,"""
+_FRESH_S = 0.9
+"""among them all that are younger than this: a wire may show in one and fall between the pixels of the next."""
 _HIT_S = 2.5
 """How long a surface that was seen is believed to be there, whatever newer pictures say: wires fall between pixels."""
 _CHOSEN = 10
 """Directions flown ahead in thought."""
 _SHARES = (1.0, 0.6, 0.3)
 """Speeds tried, as shares of the fastest from which one can stop."""
+_AHEAD = 5.0
+"""A direction that is free for so many stopping ways is as good as one without end."""
+_GLANCE_RAD = math.radians(25.0)
+"""How far the nose turns from the way flown towards the goal, so that gaps beside the way are seen."""
 _LOOK_RAD = math.radians(40.0)
 """How far the nose turns in one decision when nothing is free [rad]."""
 
@@ -55,7 +61,7 @@ class WaypointMemory:
         Decisions in a row without a free motion.
     """
 
-    seen: Seen = field(default_factory=lambda: Seen(_KEEP, _SPACING_M, np.deg2rad(_TURN_DEG)))
+    seen: Seen = field(default_factory=lambda: Seen(_KEEP, _SPACING_M, np.deg2rad(_TURN_DEG), _FRESH_S))
     heading: Float64[np.ndarray, "3"] | None = None
     told_mps: Float64[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))
     side: float = 0.0
@@ -110,8 +116,7 @@ class Waypoint:
                 velocity[k] = choice.velocity_mps[good[0]]
                 own.heading = velocity[k] / np.linalg.norm(velocity[k])
                 own.stuck, own.side = 0, own.side if own.stuck else 0.0
-                if np.hypot(*velocity[k, :2]) > 0.2:
-                    yaw[k] = np.arctan2(velocity[k, 1], velocity[k, 0])
+                yaw[k] = _look(velocity[k], seen.goal_m[k] - seen.position_m[k], float(yaw[k]))
             else:
                 yaw[k] = self._look_round(k, seen, own)
             own.told_mps = velocity[k]
@@ -132,12 +137,16 @@ class Waypoint:
             np.inf,
         )
         range_m = np.minimum(range_m, np.maximum(room, 0.0))
-        enough = min(left, 2.0 * self._reach_m)
-        cost = np.arccos(np.clip(direction @ way / max(left, 1e-9), -1.0, 1.0))
-        cost += 1.5 * np.maximum(1.0 - range_m / enough, 0.0)
+        enough = min(left, _AHEAD * self._reach_m)
+        off = np.arccos(np.clip(direction @ way / max(left, 1e-9), -1.0, 1.0))
+        cost = off + 1.5 * np.maximum(1.0 - range_m / enough, 0.0)
         if own.heading is not None:
             cost += 0.3 * np.arccos(np.clip(direction @ own.heading, -1.0, 1.0))
-        speed = np.minimum(stopping_speed(range_m, knobs), min(knobs.cruise_mps, max(1.5, left)))
+        # Beside the way one searches: slowly enough to see what opens.
+        cruise = min(knobs.cruise_mps, max(1.5, left)) * (
+            1.0 - 0.5 * np.minimum(off / (0.5 * np.pi), 1.0) ** 2
+        )
+        speed = np.minimum(stopping_speed(range_m, knobs), cruise)
         cost[speed < 0.2] = np.inf
         best = np.argsort(cost, kind="stable")[:_CHOSEN]
         best = best[np.isfinite(cost[best])]
@@ -206,6 +215,15 @@ class Waypoint:
             off = float(np.angle(np.exp(1j * (np.arctan2(way[1], way[0]) - yaw))))
             own.side = 1.0 if off >= 0.0 else -1.0
         return yaw + own.side * _LOOK_RAD
+
+
+def _look(velocity_mps: Float64[np.ndarray, "3"], way: Float64[np.ndarray, "3"], yaw_rad: float) -> float:
+    """Heading along the flight, with a glance towards the goal; the old one if the flight is upright."""
+    if np.hypot(velocity_mps[0], velocity_mps[1]) < 0.2:
+        return yaw_rad
+    course = float(np.arctan2(velocity_mps[1], velocity_mps[0]))
+    off = float(np.angle(np.exp(1j * (np.arctan2(way[1], way[0]) - course))))
+    return course + min(max(off, -_GLANCE_RAD), _GLANCE_RAD)
 
 
 def _thinned(
