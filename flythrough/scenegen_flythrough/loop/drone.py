@@ -15,13 +15,13 @@ from jaxtyping import Float64
 
 from scenegen_flythrough.loop.knobs import DroneLimits
 from scenegen_flythrough.loop.pilot import Command
+from scenegen_flythrough.quadrotor.limits import GRAVITY_MPS2
 
 DRAG_PER_S = 0.25
 """Linear rotor drag [1/s], after Faessler, Franchi and Scaramuzza, doi 10.1109/LRA.2017.2776353; our value."""
 _VELOCITY_LAG_S = 0.3
 """Time constant of the velocity controller; our choice, typical of small autopilots."""
 _YAW_LAG_S = 0.2
-GRAVITY_MPS2 = 9.81
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from scenegen.foundation.section import Number, Section, Span, within
-from scenegen_flythrough.knobs import TOP_SPEED_MPS
+from scenegen_flythrough.quadrotor.limits import TOP_SPEED_MPS
 
 
 class DroneLimits(Section):

@@ -67,7 +67,7 @@ def planner(name: str, knobs: LoopKnobs) -> Planner:
         made = plugged_in(name, "planner")(knobs)
         if not isinstance(made, Planner):
             raise InputError(f"'{name}' made no planner: it needs a name, memory() and plan()")
-        return made  # type: ignore[no-any-return]
+        return made
     if name not in PLANNERS:
         raise InputError(f"unknown planner '{name}'{nearest(name, PLANNERS)}; or give module:attribute")
     return PLANNERS[name].make(knobs)

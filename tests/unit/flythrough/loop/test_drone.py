@@ -7,10 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from scenegen_flythrough.loop.drone import GRAVITY_MPS2, DroneState, advance, camera_poses
+from scenegen_flythrough.loop.drone import DroneState, advance, camera_poses
 from scenegen_flythrough.loop.knobs import DroneLimits, WindKnobs
 from scenegen_flythrough.loop.pilot import Command
 from scenegen_flythrough.loop.wind import Gusts
+from scenegen_flythrough.quadrotor.limits import GRAVITY_MPS2
 
 DT = 0.05
 
