@@ -97,7 +97,7 @@ class _Search:
 
     def __init__(self, airspace: Airspace, knobs: FlightKnobs, frames: int, clock: Clock) -> None:
         self._airspace, self._knobs, self._frames, self._clock = airspace, knobs, frames, clock
-        lead_m = 0.5 * knobs.speed_mps[1] + 2.0  # the spline's own ends
+        lead_m = 0.5 * knobs.speed_mps[1] + 8.0  # where routes begin and run out
         self._task = Task(airspace, knobs, (frames + 1) * knobs.spacing_m + lead_m)
         self._why: Counter[str] = Counter()
 
@@ -159,7 +159,7 @@ class _Search:
             self._why["limits"] += 1
             return None
         mean = float(wind.mean_mps[0]), float(wind.mean_mps[1])
-        return Flown(motion, route.pitch_deg, at_end=route.at_end, wind_mps=mean)
+        return Flown(motion, route.pitch_deg, _lead_m(route), route.at_end, mean)
 
     def _objections(self, routes: list[Route]) -> list[str | None]:
         """Why routes cannot be flown as drawn, if so; what the wind does to them is proven later."""
@@ -179,9 +179,10 @@ class _Search:
     def _shown(self, route: Route) -> Float64[np.ndarray, "places 3"]:
         """Places along what the clip surely shows of a route: not its ends, where the motion begins and runs out."""
         curve = Curve.of(route.points)
-        need_m, ends_m = (self._frames + 1) * self._knobs.spacing_m, 0.2 * route.speed_mps
-        low = curve.length_m - need_m if route.at_end else ends_m
-        high = curve.length_m - ends_m if route.at_end else need_m
+        need_m, lead_m = (self._frames + 1) * self._knobs.spacing_m, _lead_m(route)
+        ends_m = lead_m + 0.2 * route.speed_mps
+        low = curve.length_m - lead_m - need_m if route.at_end else ends_m
+        high = curve.length_m - ends_m if route.at_end else lead_m + need_m
         s = np.linspace(max(low, 0.0), max(min(high, curve.length_m), low), max(math.ceil(need_m), 2))
         return curve.spline.at(np.clip(curve.index_at(s), 0.0, curve.u[-1]))
 
@@ -208,3 +209,10 @@ class _Search:
             f"no free flight of {length} m in this {self._airspace.world.map} world after {self.rejected} draws "
             f"({reasons}); ask for a shorter clip, less clearance, other heights, a slower speed or other styles"
         )
+
+
+def _lead_m(route: Route) -> float:
+    """Way before the clip: ends of routes run on straight, so a bend would begin there with a jolt."""
+    if route.at_end:
+        return 0.0
+    return 2.5 * float(np.linalg.norm(route.points[1] - route.points[0]))

@@ -10,9 +10,9 @@ from jaxtyping import Float64
 from scenegen_flythrough.quadrotor.limits import QuadrotorLimits
 
 _LAG_S = 0.25
-"""Time constant with which the nose follows; our choice."""
+"""Time constant with which the nose makes up what it is off; our choice."""
 _AHEAD_S = 0.25
-"""An autopilot knows its path: it begins to turn this much earlier, so that steady turns show no lag."""
+"""An autopilot knows its path: it turns at the mean rate wanted over this time ahead."""
 
 
 def follow_heading(
@@ -30,16 +30,16 @@ def follow_heading(
     top = 0.98 * math.radians(limits.yaw_rate_dps)
     push = math.radians(limits.yaw_acceleration_dps2)
     lead = round(_AHEAD_S / step_s)
-    ahead = [*wanted_rad[lead:].tolist(), *[float(wanted_rad[-1])] * min(lead, len(wanted_rad))]
-    at = float(wanted_rad[0])
-    rate = min(max((ahead[1] - ahead[0]) / step_s, -top), top)
-    out = []
-    for aim in ahead:
+    aims = wanted_rad.tolist()
+    at, out = aims[0], []
+    rate = min(max((aims[min(1, len(aims) - 1)] - at) / step_s, -top), top)
+    for k, aim in enumerate(aims):
         out.append(at)
+        coming = (aims[min(k + lead, len(aims) - 1)] - aim) / (lead * step_s)
         gap = aim - at
-        # Never faster than can still be braked before the aim: v^2 = 2 a x.
-        brake = math.sqrt(1.2 * push * abs(gap))
-        want = min(max(gap / _LAG_S, -top, -brake), top, brake)
+        # Never faster towards the aim than can still be braked before it: v^2 = 2 a x.
+        closing = min(abs(gap) / _LAG_S, math.sqrt(1.2 * push * abs(gap)))
+        want = min(max(coming + math.copysign(closing, gap), -top), top)
         rate += min(max(want - rate, -push * step_s), push * step_s)
         at += rate * step_s
-    return np.array(out[: len(wanted_rad)])
+    return np.array(out)
