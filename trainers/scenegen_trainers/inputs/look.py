@@ -42,7 +42,7 @@ class Look:
 
 def look(
     counts: Real[np.ndarray, "rows columns"],
-    previous: Real[np.ndarray, "rows columns"],
+    previous: Real[np.ndarray, "height width"],
     knobs: InputKnobs,
     true_flow: Float32[np.ndarray, "rows columns 2"] | None = None,
 ) -> Look:

@@ -50,11 +50,11 @@ class LiteMono(nn.Module):  # type: ignore[misc]
             self.stages.append(nn.Sequential(*stage, LocalGlobalBlock(after, next(drops))))
         self.ups = nn.ModuleList()
         for before, after, skip in zip(widths[::-1], [*widths[-2::-1], first], (1, 1, 0), strict=True):
-            joined = nn.Conv2d(after * (1 + skip), after, 3, 1, 1, padding_mode="reflect")
+            joined = nn.Conv2d(after * (1 + skip), after, 3, 1, 1, padding_mode="replicate")
             self.ups.append(
-                nn.ModuleList([nn.Conv2d(before, after, 3, 1, 1, padding_mode="reflect"), joined])
+                nn.ModuleList([nn.Conv2d(before, after, 3, 1, 1, padding_mode="replicate"), joined])
             )
-        self.paint = nn.Sequential(nn.Conv2d(first, 1, 3, 1, 1, padding_mode="reflect"), nn.Tanh())
+        self.paint = nn.Sequential(nn.Conv2d(first, 1, 3, 1, 1, padding_mode="replicate"), nn.Tanh())
 
     def forward(self, image: Float[Tensor, "n channels rows columns"]) -> Float[Tensor, "n 1 rows columns"]:
         """Painted depth in -1..1. Sides that are no multiple of 16 are padded with their border, then cut."""

@@ -45,7 +45,7 @@ class Machine:
             raise InputError(f"--threads {self.threads}: at least 1")
         os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")
         torch.set_num_threads(self.threads)
-        # Two paddings have no deterministic gradient on GPUs; there a warning says so instead of an error.
+        # What has no deterministic form on a GPU is said in a warning there, and is an error on the CPU.
         torch.use_deterministic_algorithms(True, warn_only=self.accelerator != "cpu")
 
     def device(self) -> str:

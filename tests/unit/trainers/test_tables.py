@@ -1,0 +1,101 @@
+"""Table 1: verdicts by hand, and the whole table through the command line, twice."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from scenegen_cli.main import main
+from scenegen_trainers.tables.order import half_width, judge
+from scenegen_trainers.tables.paper import RELATIONS, ROWS, Relation
+
+TINY = [
+    *("--training.steps", "2", "--training.judge", "2", "--training.judge-pairs", "2"),
+    *("--pix2pix.width", "2", "--pix2pix.judge-width", "2", "--pix2pix.downs", "3"),
+]
+
+
+def test_half_width_of_a_mean_by_hand() -> None:
+    """Three values 1, 2, 3: t(0.975, 2) = 4.302653, sd 1, so 4.302653 / sqrt(3)."""
+    assert half_width([1.0, 2.0, 3.0]) == pytest.approx(4.302653 / 3**0.5, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("better", "verdict"),
+    [((1.0, 1.1, 0.9), "held"), ((2.5, 1.0, 2.0), "open"), ((3.0, 3.1, 2.9), "not held")],
+)
+def test_a_relation_is_held_by_more_than_its_spread(better: tuple[float, ...], verdict: str) -> None:
+    relation = Relation("x", ("a",), ("b",))
+    runs = {"a": better, "b": (2.0, 2.1, 1.9)}
+    assert judge(relation, "rmse_m", runs).verdict == verdict
+    flipped = {"held": "not held", "not held": "held", "open": "open"}[verdict]
+    assert judge(relation, "delta1", runs).verdict == flipped
+
+
+def test_the_worst_pair_decides_and_one_seed_decides_nothing() -> None:
+    relation = Relation("x", ("a",), ("b", "c"))
+    runs = {"a": (1.0, 1.1), "b": (9.0, 9.1), "c": (0.2, 0.3)}
+    found = judge(relation, "rel", runs)
+    assert found.verdict == "not held" and found.against == "a against c"
+    assert judge(relation, "rel", {"a": (1.0,), "b": (9.0,), "c": (9.0,)}).verdict == "open"
+
+
+def test_the_paper_supports_its_own_relations() -> None:
+    """In every score, ties included."""
+    for relation in RELATIONS:
+        assert set(relation.better) | set(relation.worse) <= {row.key for row in ROWS}
+        for score in ROWS[0].figures:
+            runs = {row.key: (row.figures[score],) for row in ROWS}
+            assert judge(relation, score, runs).margin >= 0.0
+
+
+@pytest.mark.slow
+def test_the_whole_table_twice(toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name, jobs in (("a", "2"), ("b", "1")):
+        arguments = ["--data", str(toy), "--out", str(tmp_path / name), "--seeds", "1", "--jobs", jobs]
+        assert main(["table1", *arguments, *TINY]) == 0
+    for ending in ("json", "md", "html"):
+        first, second = ((tmp_path / name / f"table1.{ending}").read_bytes() for name in "ab")
+        assert first == second
+    table = json.loads((tmp_path / "a" / "table1.json").read_text())
+    assert [row["key"] for row in table["rows"]] == [row.key for row in ROWS]
+    assert all(len(row["runs"]) == 1 for row in table["rows"])
+    assert {r["verdict"] for r in table["relations"]} <= {"held", "open", "not held"}
+    capsys.readouterr()
+    assert main(["table1", "--data", str(toy), "--out", str(tmp_path / "a"), "--seeds", "1", *TINY[2:]]) == 2
+    assert "another training.steps (2, now 400)" in capsys.readouterr().err
+
+
+def test_train_and_evaluate_from_the_command_line(
+    toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "run"
+    assert main(["train", "--data", str(toy), "--out", str(out), "--model", "pix2pix", *TINY]) == 0
+    model = capsys.readouterr().out.strip()
+    assert model == str(out / "model.pt")
+    assert main(["evaluate", model, str(toy), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["scores"]["images"] == 8
+    assert (out / "evaluation-test" / "worst.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["train"], "--data is missing"),
+        (["train", "--data", "nowhere"], "nowhere"),
+        (["train", "--data", "x", "--model", "unet"], "--model unet: unknown model; known: fastdepth"),
+        (["train", "--data", "x", "--inputs.flow", "fernback"], "perhaps you meant 'farneback'"),
+        (["train", "--data", "x", "--profile", "tiny"], "--profile tiny: unknown profile; known: ci"),
+        (["evaluate", "none.pt", "x"], "none.pt: no such file"),
+        (["table1"], "--data is missing"),
+        (["table1", "--data", "x", "--seeds", "0"], "--seeds must be at least 1"),
+    ],
+)
+def test_mistakes_are_one_line(
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(arguments) == 2
+    said = capsys.readouterr().err.strip()
+    assert message in said and "\n" not in said
