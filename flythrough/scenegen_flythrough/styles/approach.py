@@ -49,15 +49,14 @@ class Approach:
 def _in_front(
     task: Task, room: UInt8[np.ndarray, "rows columns"], stop_m: float, rng: np.random.Generator
 ) -> tuple[Float64[np.ndarray, "places 2"], Float64[np.ndarray, "places"]]:
-    """Places as far from something as asked, and the heading that leads away from it most openly."""
+    """Places as far from something as asked, and the heading that leads straight away from it."""
     airspace = task.airspace
     cells = min(max(round(stop_m / airspace.cell_m) + 1, 2), ROOM_CELLS - 1)
     front = np.flatnonzero(room.ravel() == cells)
     if len(front) == 0:
         return np.zeros((0, 2)), np.zeros(0)
     xy = airspace.centre(front[rng.integers(len(front), size=BATCH)])
-    reach = np.array([2.0, 4.0, 7.0, 11.0, 16.0, 24.0])
-    fan = directions(_FAN_RAD)[None, :, None, :] * reach[None, None, :, None]
-    seen = np.minimum.accumulate(airspace.look_up(room, xy[:, None, None, :] + fan), axis=2).sum(axis=2)
-    behind = np.roll(seen, len(_FAN_RAD) // 2, axis=1)  # what lies the other way is the obstacle
-    return xy, _FAN_RAD[np.argmax(seen - 2 * behind, axis=1)]
+    fan = directions(_FAN_RAD)
+    around = airspace.look_up(room, xy[:, None] + max(stop_m, 2.0) * fan).astype(np.float64)
+    away = np.einsum("pk,kd->pd", around - around.mean(axis=1, keepdims=True), fan)  # where the room grows
+    return xy, np.arctan2(away[:, 1], away[:, 0])
