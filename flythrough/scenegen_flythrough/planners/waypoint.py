@@ -18,6 +18,7 @@ from jaxtyping import Bool, Float32, Float64, Int64
 
 from scenegen_flythrough.loop.knobs import LoopKnobs
 from scenegen_flythrough.loop.pilot import Command, Observation
+from scenegen_flythrough.planners.detour import Detour, next_detour
 from scenegen_flythrough.planners.fan import fan
 from scenegen_flythrough.planners.foresight import stopping_speed, then_stop
 from scenegen_flythrough.planners.sight import Seen, sights
@@ -38,6 +39,8 @@ _SHARES = (1.0, 0.6, 0.3)
 """Speeds tried, as shares of the fastest from which one can stop."""
 _AHEAD = 5.0
 """A direction that is free for so many stopping ways is as good as one without end."""
+_SEARCH = 0.35
+"""How much more slowly the drone flies across its way."""
 _GLANCE_RAD = math.radians(25.0)
 """How far the nose turns from the way flown towards the goal, so that gaps beside the way are seen."""
 _LOOK_RAD = math.radians(40.0)
@@ -59,6 +62,7 @@ class WaypointMemory:
         +1 or -1: to which side it turns when nothing is free; 0 before it first had to.
     stuck : int
         Decisions in a row without a free motion.
+    detour : Detour or None
     """
 
     seen: Seen = field(default_factory=lambda: Seen(_KEEP, _SPACING_M, np.deg2rad(_TURN_DEG), _FRESH_S))
@@ -66,6 +70,7 @@ class WaypointMemory:
     told_mps: Float64[np.ndarray, "3"] = field(default_factory=lambda: np.zeros(3))
     side: float = 0.0
     stuck: int = 0
+    detour: Detour | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +121,10 @@ class Waypoint:
                 velocity[k] = choice.velocity_mps[good[0]]
                 own.heading = velocity[k] / np.linalg.norm(velocity[k])
                 own.stuck, own.side = 0, own.side if own.stuck else 0.0
-                yaw[k] = _look(velocity[k], seen.goal_m[k] - seen.position_m[k], float(yaw[k]))
+                way = seen.goal_m[k] - seen.position_m[k]
+                left = float(np.linalg.norm(way))
+                own.detour = next_detour(own.detour, velocity[k], way, left, seen.time_s)
+                yaw[k] = _look(velocity[k], way, float(yaw[k]))
             else:
                 yaw[k] = self._look_round(k, seen, own)
             own.told_mps = velocity[k]
@@ -140,11 +148,13 @@ class Waypoint:
         enough = min(left, _AHEAD * self._reach_m)
         off = np.arccos(np.clip(direction @ way / max(left, 1e-9), -1.0, 1.0))
         cost = off + 1.5 * np.maximum(1.0 - range_m / enough, 0.0)
+        if own.detour is not None:
+            cost += own.detour.cost(direction, way)
         if own.heading is not None:
             cost += 0.3 * np.arccos(np.clip(direction @ own.heading, -1.0, 1.0))
         # Beside the way one searches: slowly enough to see what opens.
         cruise = min(knobs.cruise_mps, max(1.5, left)) * (
-            1.0 - 0.5 * np.minimum(off / (0.5 * np.pi), 1.0) ** 2
+            1.0 - _SEARCH * np.minimum(off / (0.5 * np.pi), 1.0) ** 2
         )
         speed = np.minimum(stopping_speed(range_m, knobs), cruise)
         cost[speed < 0.2] = np.inf

@@ -10,6 +10,7 @@ import pytest
 from scenegen_flythrough.loop.drone import DroneState, advance, camera_poses
 from scenegen_flythrough.loop.knobs import LoopKnobs
 from scenegen_flythrough.loop.pilot import Command, Observation
+from scenegen_flythrough.planners.detour import next_detour
 from scenegen_flythrough.planners.five_section import STOP_M, SWITCH_M, FiveSection, band_depths
 from scenegen_flythrough.planners.foresight import stopping_speed, then_stop
 from scenegen_flythrough.planners.sight import FREE, HIT, UNKNOWN, Seen, sights
@@ -254,3 +255,23 @@ def test_straight_heads_for_the_goal_and_slows_down_there():
     near = Straight(8.0).plan(FAR, seen_from(at_rest(1.0), (0.0, 0.0, 12.0)), [None])
     np.testing.assert_allclose(near.velocity_mps, [[0.0, 0.0, 2.0]])
     assert near.yaw_rad[0] == 1.0
+
+
+def test_a_detour_keeps_its_side_until_it_pays_or_its_patience_ends():
+    goal, left, right = np.array([50.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([0.0, -1.0, 0.0])
+    ahead = np.array([1.0, 0.0, 0.0])
+    assert next_detour(None, ahead, goal, 50.0, 0.0) is None
+    begun = next_detour(None, left, goal, 50.0, 0.0)
+    cost = begun.cost(np.stack([ahead, left, right]), goal)
+    assert cost[0] == cost[1] == 0.0
+    assert cost[2] > 1.0
+    assert next_detour(begun, left, goal, 55.0, 15.0) == begun  # further away, but patient
+    nearer = next_detour(begun, left, goal, 48.0, 15.0)
+    assert (
+        next_detour(nearer, left, goal, 60.0, 34.0).side == begun.side
+    )  # patience counts from the last gain
+    other = next_detour(nearer, left, goal, 60.0, 36.0)
+    assert other.side == -begun.side
+    assert other.patience_s == 2.0 * begun.patience_s
+    assert next_detour(begun, ahead, goal, 49.5, 5.0) is not None  # free, but hardly nearer
+    assert next_detour(begun, ahead, goal, 47.0, 5.0) is None
