@@ -37,16 +37,21 @@ class RecordedLeaning:
     ----------
     turned : RotationSpline
         Body to world over the time of the motion.
+    aimed : bool
+        The body is one that the camera sits on straight: how the airframe leaned below it is not known.
     """
 
     turned: RotationSpline
+    aimed: bool
 
     def at(self, t: Float64[np.ndarray, "times"], position: UniformSpline) -> Attitude:
         """Attitude and body rates at instants."""
         return Attitude(np.asarray(self.turned(t).as_matrix()), np.asarray(self.turned(t, 1)))
 
     def up(self, t: Float64[np.ndarray, "times"], position: UniformSpline) -> Float64[np.ndarray, "times 3"]:
-        """Along the rotor axis, a unit vector."""
+        """Along the rotor axis, as far as it is known, a unit vector."""
+        if self.aimed:
+            return np.tile([0.0, 0.0, 1.0], (len(t), 1))
         return np.asarray(self.turned(t).as_matrix()[:, :, 2])
 
 
@@ -136,7 +141,7 @@ def _recorded_leaning(recording: Recording, *, camera: bool) -> RecordedLeaning:
         turned = Rotation.from_matrix(turned.as_matrix() @ body_from_camera(0.0).T)
     step = max(0.5 * _KNOT_S, float(np.median(np.diff(recording.time_s))))
     even = np.linspace(0.0, recording.time_s[-1], max(int(recording.time_s[-1] / step), 2) + 1)
-    return RecordedLeaning(RotationSpline(even, Slerp(recording.time_s, turned)(even)))
+    return RecordedLeaning(RotationSpline(even, Slerp(recording.time_s, turned)(even)), camera)
 
 
 def _flown_leaning(position: UniformSpline, knobs: FlightKnobs) -> FlatLeaning:
@@ -185,7 +190,6 @@ def _moved(task: Task, motion: Motion, rng: np.random.Generator) -> Motion | Non
             UniformSpline(heading.start, heading.step, heading.control + angle), leaning.wind
         )
     elif isinstance(leaning, RecordedLeaning):
-        leaning = RecordedLeaning(
-            RotationSpline(leaning.turned.times, turn * leaning.turned(leaning.turned.times))
-        )
+        times = leaning.turned.times
+        leaning = RecordedLeaning(RotationSpline(times, turn * leaning.turned(times)), leaning.aimed)
     return Motion(position, leaning)
