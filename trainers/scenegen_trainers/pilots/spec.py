@@ -36,7 +36,7 @@ class PilotSpec:
     planner : str
         Of `scenegen_flythrough.planners.registry`, or ``module:attribute``. A plug-in that flies by itself has none.
     sha256 : str
-        Of the file, or of the module's source; empty for names.
+        Of the file, or of the sources of plug-ins; empty for names.
     """
 
     kind: Literal["name", "file", "module"]
@@ -55,7 +55,7 @@ class PilotSpec:
     def slug(self) -> str:
         """Its directory in a campaign. Another file of the same name is another pilot."""
         identity = {k: v for k, v in asdict(self).items() if k != "word" or self.kind == "module"}
-        mark = f"+{digest(identity)[:8]}" if self.kind != "name" else ""
+        mark = f"+{digest(identity)[:8]}" if self.sha256 else ""
         return slug(f"{self.name[:60]}+{self.planner[:40]}") + mark
 
     def to_json(self) -> dict[str, Any]:
@@ -76,15 +76,16 @@ def parse_pilot(word: str, planner_name: str) -> PilotSpec:
     InputError
         If it is no pilot: names the nearest right thing.
     """
+    planner_hash = _source_hash(planner_name, "planner") if ":" in planner_name else ""
     if word in BUILT_IN:
-        return PilotSpec("name", word, planner_name)
+        return PilotSpec("name", word, planner_name, planner_hash)
     path = Path(word)
     if path.suffix.lower() in (*TORCH_ENDINGS, ONNX_ENDING):
         if not path.is_file():
             raise InputError(f"--pilot {word}: no such file")
-        return PilotSpec("file", str(path.resolve()), planner_name, _sha256(path))
+        return PilotSpec("file", str(path.resolve()), planner_name, _sha256(path) + planner_hash)
     if ":" in word:
-        return PilotSpec("module", word, planner_name, _source_hash(word))
+        return PilotSpec("module", word, planner_name, _source_hash(word, "pilot") + planner_hash)
     if path.exists():
         raise InputError(f"--pilot {word}: a network is a file that ends in .pt, .pth or .onnx")
     raise InputError(
@@ -157,8 +158,8 @@ def _sha256(path: Path) -> str:
         raise InputError(f"--pilot {path}: cannot be read: {error.strerror}") from None
 
 
-def _source_hash(word: str) -> str:
-    """SHA-256 of the module's source, so that flights of an edited pilot are not mixed with those before."""
-    plugged_in(word, "pilot")
+def _source_hash(word: str, what: str) -> str:
+    """SHA-256 of the module's source, so that flights of an edited plug-in are not mixed with those before."""
+    plugged_in(word, what)
     source = inspect.getsourcefile(importlib.import_module(word.partition(":")[0]))
     return _sha256(Path(source)) if source is not None else ""

@@ -9,7 +9,7 @@ from scenegen_trainers.campaign.report.ink import END_COLOUR, END_WORDS, PILOT_C
 from scenegen_trainers.campaign.statistics import Rate
 
 WIDTH, HEIGHT = 560, 300
-_LEFT, _RIGHT, _TOP, _BOTTOM = 52, 18, 18, 48
+_LEFT, _RIGHT, _TOP, _BOTTOM = 52, 18, 34, 48
 
 
 @dataclass(frozen=True)
