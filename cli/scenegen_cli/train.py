@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -73,10 +74,13 @@ def run(arguments: Sequence[str]) -> int:
         command.accelerator, command.devices, command.precision, command.threads, command.tensorboard
     )
     out = command.out or Path(f"{command.model}-seed{command.seed}")
-    steps = Steps(command.model, quiet=command.json)
+    speaks = os.environ.get("LOCAL_RANK", "0") == "0"  # one of several processes does
+    steps = Steps(command.model, quiet=command.json or not speaks)
     model = train(
         recipe, TrainingData.at(command.data), out, machine, lambda t: steps(t.step, t.steps, t.losses)
     )
+    if not speaks:
+        return 0
     if command.json:
         say_json({"model": str(model), "log": str(out / "log.csv")})
         return 0

@@ -1,0 +1,1 @@
+"""Networks for a drone's own computer: ONNX graphs, and what they cost."""
