@@ -108,14 +108,11 @@ def test_another_recipe_is_refused_and_the_same_one_flies_nothing(
 
 
 def test_a_replay_is_the_flight_that_was_flown(flown: Path) -> None:
-    assert main(fly(flown, "--versus", "blind", "--replay", "5", jobs=1)) == 0
-    films = sorted((flown / "replays").glob("city-00005-*.webp"))
-    assert [film.name.split("-")[3].partition("+")[0] for film in films] == ["blind", "oracle"]
-    by_pilot = {row["pilot"]: row for row in rows(flown) if row["flight"] == "5"}
-    for film, pilot in zip(films, ("blind", "oracle"), strict=True):
-        with Image.open(film) as moving:
-            assert getattr(moving, "n_frames", 1) >= 2
-            assert moving.n_frames <= int(by_pilot[pilot]["decisions"]) + 1  # still frames are merged
+    assert main(fly(flown, "--replay", "5", jobs=1)) == 0
+    (film,) = (flown / "replays").glob("*.webp")
+    (flight,) = (row for row in rows(flown) if row["flight"] == "5")
+    with Image.open(film) as moving:
+        assert 2 <= getattr(moving, "n_frames", 1) <= int(flight["decisions"]) + 1  # equal frames are merged
 
 
 def test_a_network_sees_heat_and_flies(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -193,14 +190,6 @@ def test_bad_input_is_one_line_and_exit_code_two(
     assert said in line
     assert line.startswith("scenegen: ")
     assert not list(tmp_path.glob("c/flights"))
-
-
-def test_missions_that_no_world_has_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    impossible = ["1500" if word == "45" else word for word in fly(tmp_path / "c", flights=4, jobs=1)]
-    assert main(impossible) in (1, 2)
-    assert (
-        "ask for another difficulty, distance or height" in capsys.readouterr().err.strip().splitlines()[-1]
-    )
 
 
 def test_the_command_costs_no_torch(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""A world to fly in: geometry and obstacles at once, heat only once somebody looks through a thermal camera."""
+"""A world to fly in: geometry and obstacles at once, the renderer once somebody looks, heat once he looks at heat."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from scenegen_datasets.stopwatch import Stopwatch
 from scenegen_flythrough.airspace import Airspace
 from scenegen_flythrough.loop.contact import Obstacles
 from scenegen_render.exposure.expose import expose
-from scenegen_render.scene import load, release_memory
+from scenegen_render.scene import LoadedWorld, load, release_memory
 
 
 class Place:
@@ -34,7 +34,6 @@ class Place:
     ----------
     season : Season
     world : World
-    loaded : LoadedWorld
     airspace : Airspace
     obstacles : Obstacles
     """
@@ -43,18 +42,23 @@ class Place:
         self._recipe, self._map, self._index, self._watch = recipe, map, index, watch
         with watch("build"):
             self.season, self.world = raise_world(recipe, map, index)
-        with watch("load"):
-            self.loaded = load(self.world)
         with watch("airspace"):
             self.airspace = Airspace(self.world)
             self.obstacles = Obstacles(self.world, self.airspace.proximity)
 
     @cached_property
+    def loaded(self) -> LoadedWorld:
+        """The world in the renderer's hands; a blind pilot never asks for it."""
+        with self._watch("load"):
+            return load(self.world)
+
+    @cached_property
     def exposure(self) -> Exposure:
         """What all sites see; the most costly part of a world, made when it is first asked for."""
+        loaded = self.loaded
         with self._watch("expose"):
             rng = stream(self._recipe.seed, self._map, self._index, "exposure")
-            return expose(self.loaded, self.season, rng, self._recipe.exposure)
+            return expose(loaded, self.season, rng, self._recipe.exposure)
 
     @cached_property
     def heat(self) -> HeatModel:
@@ -64,7 +68,8 @@ class Place:
 
     def release(self) -> None:
         """Give the renderer's memory back."""
-        self.loaded.release()
+        if "loaded" in self.__dict__:
+            self.loaded.release()
 
 
 class Places:
