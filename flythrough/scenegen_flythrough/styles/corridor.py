@@ -18,6 +18,7 @@ _BATCHES = 3
 _STARTS = 160
 _HEADINGS_RAD = np.arange(24) * (2 * np.pi / 24)
 _STATION_M = 4.0
+_SWAY_M = 28.0
 _ENCLOSED = 0.5
 """Share of the way that must have something on both sides."""
 
@@ -82,6 +83,17 @@ def _centred(
         free.append((seen > 0).cumprod(axis=2).sum(axis=2).astype(np.float64))
     total = free[0] + free[1]
     walled = (total >= width[0]) & (total <= width[1]) & (np.maximum(*free) < len(across))
-    shift = np.where(walled, np.clip(0.5 * (free[0] - free[1]), -5.0, 5.0), 0.0)
-    shift = uniform_filter1d(uniform_filter1d(shift, 5, axis=1, mode="nearest"), 3, axis=1, mode="nearest")
+    weight = walled + 1e-3  # where there are no walls the line runs on as it did between the last ones
+    wanted = weight * np.where(walled, np.clip(0.5 * (free[0] - free[1]), -5.0, 5.0), 0.0)
+    shift = _slowly(wanted) / _slowly(weight)
     return spots + shift[..., None] * left, walled.mean(axis=1)
+
+
+def _slowly(values: Float64[np.ndarray, "lines stations"]) -> Float64[np.ndarray, "lines stations"]:
+    """Means over some thirty metres, twice: a drone sways with the street, not with every porch."""
+    count = 2 * round(0.5 * _SWAY_M / _STATION_M) + 1
+    return np.asarray(
+        uniform_filter1d(
+            uniform_filter1d(values, count, axis=1, mode="nearest"), count, axis=1, mode="nearest"
+        )
+    )
