@@ -79,3 +79,25 @@ def test_inner_points_skip_what_stays_outside_the_box() -> None:
     for shift in ([200.0, 0, 0], [0, -101.0, 0], [0, 0, -39.6], [0, 0, 100.0]):
         assert not sum(len(b) for b in inner_points(corners + np.float32(shift), faces, 1.0, BOX))
     assert sum(len(b) for b in inner_points(corners + np.float32([0, 0, -39.4]), faces, 1.0, BOX))
+
+
+def test_tops_are_never_below_what_stands_there_and_little_above(tower: Airspace) -> None:
+    roof = np.stack(np.meshgrid(np.arange(-19.5, 20.0), np.arange(-9.5, 10.0)), axis=-1)
+    tops = tower.tops(roof)
+    assert tops.min() >= 30.0
+    assert tops.max() <= 34.0  # a layer of two metres, and one to spare
+    plain = np.array([[30.0, 0.0], [0.0, 40.0], [500.0, 0.0]])
+    np.testing.assert_array_equal(tower.tops(plain), 0.0)
+
+
+def test_blocked_is_what_is_near_a_wall_a_roof_or_the_ground_and_what_lies_beyond_the_map(
+    tower: Airspace,
+) -> None:
+    at = np.arange(-8.5, 9.5, 2.0)
+    wall = np.stack([np.full(9, 20.4), at, np.full(9, 11.0)], axis=1)
+    assert tower.blocked(wall).all()
+    np.testing.assert_array_equal(tower.blocked(wall + np.array([6.0, 0.0, 0.0])), False)
+    assert tower.blocked(
+        np.array([[0.0, 0.0, 30.5], [0.0, 0.0, 31.9], [60.0, 0.0, 0.2], [300.0, 0.0, 50.0]])
+    ).all()
+    np.testing.assert_array_equal(tower.blocked(np.array([[0.0, 0.0, 36.1], [60.0, 0.0, 3.0]])), False)

@@ -9,7 +9,7 @@ from scenegen.geometry.template import place
 from scenegen.movers.clock import Clock
 from scenegen.movers.mover import Mover
 from scenegen.movers.rounds import Pace, ring_route
-from scenegen_flythrough.traffic import keeps_clear
+from scenegen_flythrough.traffic import keeps_clear, reaches_of
 
 TIMES = (np.arange(40) - 1.0) * 0.1
 
@@ -59,3 +59,14 @@ def test_movers_elsewhere_do_not_matter():
     path = beside(cart(), 0.0) + np.array([0.0, 500.0, 0.0])
     assert keeps_clear((cart(),), Clock(3.0), path, TIMES, 1.0)
     assert keeps_clear((), Clock(), path, TIMES, 1.0)
+
+
+def test_a_mover_never_leaves_the_box_of_its_whole_round():
+    mover = cart()
+    (low, high) = reaches_of((mover,))[0]
+    for second in np.arange(0.0, 40.0, 0.7):
+        pose = mover.route.pose(float(second))
+        corners = mover.body.vertices @ pose[:3, :3].T + pose[:3, 3]
+        assert (corners >= low).all()
+        assert (corners <= high).all()
+    assert reaches_of(()).shape == (0, 2, 3)
