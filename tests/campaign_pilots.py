@@ -53,13 +53,6 @@ class Faulty(Climber):
         return decision
 
 
-class Unwilling(Climber):
-    """Fails before its first flight."""
-
-    def begin(self, flights: np.ndarray, seed: int) -> None:
-        raise RuntimeError("not today")
-
-
 def broken() -> None:
     raise ValueError("no weights here")
 

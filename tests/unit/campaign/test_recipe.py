@@ -4,6 +4,7 @@ import pytest
 
 import flown
 from scenegen.foundation.errors import InputError
+from scenegen.maps.registry import MAPS
 from scenegen_datasets.resolve import Source
 from scenegen_trainers.campaign import recipe as module
 from scenegen_trainers.campaign.recipe import flight_keys, resolve_flights
@@ -26,6 +27,10 @@ def test_a_map_has_its_own_difficulty_unless_one_is_asked_for(monkeypatch: pytes
     assert [recipe.missions[m].difficulty for m in ("city", "field", "coastline")] == [0.25, 0.75, usual]
     asked = resolve(map=["city", "field"], mission={"difficulty": 0.5, "distance_m": 70.0})
     assert {(k.difficulty, k.distance_m) for k in asked.missions.values()} == {(0.5, 70.0)}
+
+
+def test_every_map_has_a_difficulty_fixed_for_it() -> None:
+    assert set(module.DIFFICULTY) == set(MAPS)
 
 
 def test_a_drone_is_as_fast_as_it_is_to_cruise() -> None:

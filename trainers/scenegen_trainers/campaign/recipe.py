@@ -13,7 +13,9 @@ from scenegen_datasets.resolve import Source, leaves, merge, resolve
 from scenegen_flythrough.loop.knobs import LoopKnobs, MissionKnobs
 from scenegen_trainers.campaign.knobs import CampaignKnobs
 
-DIFFICULTY: Mapping[str, float] = MappingProxyType({})
+DIFFICULTY: Mapping[str, float] = MappingProxyType(
+    {"city": 0.6, "coastline": 0.6, "neighborhood": 0.6, "field": 0.6}
+)
 """`mission.difficulty` of each map where a recipe leaves it open: such that the oracle collides in at most 5 % of 400
 flights, and a blind pilot in 40 to 85 %. Other scenes take the key's own default."""
 
