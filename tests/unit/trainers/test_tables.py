@@ -8,8 +8,11 @@ from pathlib import Path
 import pytest
 
 from scenegen_cli.main import main
+from scenegen_trainers.models.checkpoint import read_checkpoint
 from scenegen_trainers.tables.order import half_width, judge
 from scenegen_trainers.tables.paper import RELATIONS, ROWS, Relation
+from scenegen_trainers.tables.table1 import run_name
+from scenegen_trainers.tables.worker import worker
 
 TINY = [
     *("--training.steps", "2", "--training.judge", "2", "--training.judge-pairs", "2"),
@@ -52,19 +55,29 @@ def test_the_paper_supports_its_own_relations() -> None:
 
 
 @pytest.mark.slow
-def test_the_whole_table_twice(toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for name, jobs in (("a", "2"), ("b", "1")):
-        arguments = ["--data", str(toy), "--out", str(tmp_path / name), "--seeds", "1", "--jobs", jobs]
-        assert main(["table1", *arguments, *TINY]) == 0
-    for ending in ("json", "md", "html"):
-        first, second = ((tmp_path / name / f"table1.{ending}").read_bytes() for name in "ab")
-        assert first == second
-    table = json.loads((tmp_path / "a" / "table1.json").read_text())
+def test_the_whole_table_and_one_run_again(
+    toy: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "table"
+    arguments = ["table1", "--data", str(toy), "--out", str(out), "--seeds", "1", "--jobs", "2"]
+    assert main([*arguments, *TINY]) == 0
+    said = capsys.readouterr().out.split()
+    assert said == [str(out / f"table1.{ending}") for ending in ("json", "md", "html")]
+    table = json.loads((out / "table1.json").read_text())
     assert [row["key"] for row in table["rows"]] == [row.key for row in ROWS]
     assert all(len(row["runs"]) == 1 for row in table["rows"])
-    assert {r["verdict"] for r in table["relations"]} <= {"held", "open", "not held"}
-    capsys.readouterr()
-    assert main(["table1", "--data", str(toy), "--out", str(tmp_path / "a"), "--seeds", "1", *TINY[2:]]) == 2
+    assert {found["verdict"] for found in table["relations"]} == {"open"}  # one seed decides nothing
+    assert "| proposed | 300 |" in (out / "table1.md").read_text()
+
+    row = ROWS[-1]
+    before = out / "runs" / run_name(row, 0)
+    recipe = read_checkpoint(before / "model.pt").record["recipe"]
+    handle = worker({"data": str(toy), "split": "test"})
+    handle({"recipe": recipe, "out": str(tmp_path / "again")}, lambda said: None)
+    for name in ("scores.json", "model.pt"):
+        assert (before / name).read_bytes() == (tmp_path / "again" / name).read_bytes()
+
+    assert main([*arguments, *TINY[2:]]) == 2
     assert "another training.steps (2, now 400)" in capsys.readouterr().err
 
 
