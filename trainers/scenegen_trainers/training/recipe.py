@@ -105,7 +105,7 @@ PROFILES: Mapping[str, Mapping[str, Any]] = {
         "pix2pix": {"width": 16, "judge_width": 16},
         "fastdepth": {"width": 0.25},
         "litemono": {"width": 0.5},
-        "training": {"steps": 400, "batch": 4, "keep": 200, "judge": 200, "judge_pairs": 32},
+        "training": {"steps": 600, "batch": 4, "keep": 200, "judge": 300, "judge_pairs": 32},
     },
     "small": {
         "pix2pix": {"width": 16, "judge_width": 16},
