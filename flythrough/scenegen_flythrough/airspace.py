@@ -163,7 +163,7 @@ def _grown(blocked: Bool[np.ndarray, "rows columns"], *, square: bool) -> Bool[n
 
 
 def _widened(layers: UInt64[np.ndarray, "rows columns"]) -> UInt64[np.ndarray, "rows columns"]:
-    """Everything grown by a cell to all sides and by half a layer's worth up and down: one layer each."""
+    """Everything grown by a cell to all sides and by a layer up and down."""
     out = layers | layers << np.uint64(1) | layers >> np.uint64(1)
     for axis in (0, 1):
         grown = out.copy()
@@ -171,4 +171,4 @@ def _widened(layers: UInt64[np.ndarray, "rows columns"]) -> UInt64[np.ndarray, "
         grown[before] |= out[after]
         grown[after] |= out[before]
         out = grown
-    return out
+    return np.asarray(out)
