@@ -63,6 +63,8 @@ class Fly:
     """Image size WIDTHxHEIGHT; keeps the camera's horizontal field of view."""
     jobs: int = 0
     """Worker processes; 0 is one per CPU."""
+    allow_mixed: bool = False
+    """Go on with a campaign that other software versions began."""
     dry_run: bool = False
     """Say what would be flown, and stop."""
     json: bool = False
@@ -139,6 +141,7 @@ def ask(command: Fly, flags: Mapping[str, Any]) -> Campaign:
         root=root,
         processes=processes(command.jobs),
         sweep=sweep,
+        allow_mixed=command.allow_mixed,
     )
 
 

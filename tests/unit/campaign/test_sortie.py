@@ -1,6 +1,5 @@
 """What a batch does around its flights: telling pilots, hiding the truth, keeping the moment."""
 
-
 import numpy as np
 import pytest
 

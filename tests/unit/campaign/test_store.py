@@ -54,6 +54,16 @@ def test_another_recipe_is_refused_by_its_keys(store: CampaignStore) -> None:
     store.open(flown.recipe(layers=["thermal", "depth"]))  # decides no flight
 
 
+def test_other_software_is_refused_until_it_is_allowed(store: CampaignStore) -> None:
+    path = store.root / "campaign.json"
+    held = json.loads(path.read_text())
+    held["software"]["numpy"] = "0.9"
+    path.write_text(json.dumps(held))
+    with pytest.raises(InputError, match=r'other software \(numpy: "0\.9" -> .*--allow-mixed'):
+        store.open(flown.recipe())
+    store.open(flown.recipe(), allow_mixed=True)
+
+
 def test_a_stranger_s_directory_is_left_alone(tmp_path: Path) -> None:
     (tmp_path / "thesis.tex").write_text("x")
     with pytest.raises(InputError, match=r"not a campaign \(it holds thesis\.tex\)"):

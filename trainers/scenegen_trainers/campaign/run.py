@@ -44,6 +44,8 @@ class Campaign:
     processes : int
     sweep : tuple of Point
         What `points` differ by.
+    allow_mixed : bool
+        Add to flights that other software flew.
     """
 
     recipe: FlightRecipe
@@ -53,6 +55,7 @@ class Campaign:
     root: Path
     processes: int
     sweep: tuple[Point, ...] = ()
+    allow_mixed: bool = False
 
     @property
     def swept(self) -> bool:
@@ -126,7 +129,7 @@ def run(campaign: Campaign, told: Told) -> dict[str, str]:
     _make(campaign.root)
     store = CampaignStore(campaign.root)
     with DirectoryLock(campaign.root):
-        store.open(campaign.recipe)
+        store.open(campaign.recipe, allow_mixed=campaign.allow_mixed)
         missing = [
             (point, pilot, batch)
             for point, pilot, batch in campaign.everything()

@@ -1,6 +1,6 @@
 """A campaign directory: made, opened again, grown. A batch is one file, there whole or not at all.
 
-DIR/campaign.json                                    the recipe, resolved; refuses another one
+DIR/campaign.json                                    recipe and software; refuses others
 DIR/flights/POINT/MAP/PILOT/00003.json               one batch flown by one pilot
 DIR/results.json  flights.csv  flights.parquet       derived from them
 DIR/index.html  replays/                             for people
@@ -10,13 +10,14 @@ DIR/run.log.jsonl                                    when, where, at what cost; 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 from scenegen.foundation import canonical
 from scenegen.foundation.atomic import make_directories, remove_partials, write_atomic
 from scenegen.foundation.errors import DatasetError, InputError
-from scenegen_datasets.lock import recipe_id
+from scenegen_datasets.lock import fingerprint, recipe_id
 from scenegen_datasets.recipe import SCENE_SEMANTICS
 from scenegen_datasets.store import RUN_LOG, WRITER_LOCK, differing_keys
 from scenegen_trainers.campaign.names import is_slug
@@ -47,19 +48,26 @@ class CampaignStore:
     def __init__(self, root: Path) -> None:
         self.root = root
 
-    def open(self, recipe: FlightRecipe) -> None:
+    def open(self, recipe: FlightRecipe, *, allow_mixed: bool = False) -> None:
         """Make the directory a campaign's, or go on with the campaign in it. Call it with the lock held.
+
+        Parameters
+        ----------
+        recipe : FlightRecipe
+        allow_mixed : bool
+            Go on although other software flew the flights that are there.
 
         Raises
         ------
         InputError
-            If it holds something else, or a campaign of another recipe; names the keys that differ.
+            If it holds something else, a campaign of another recipe, or one flown by other software; names what
+            differs.
         """
         check_output(self.root)
         wanted = _lock(recipe)
         path = self.root / LOCK
         if path.exists():
-            self._refuse_other(wanted)
+            self._refuse_other(wanted, allow_mixed)
         else:
             write_atomic(path, canonical.pretty(wanted))
         folders = [p for name in (FLIGHTS, PLANS, REPLAYS) for p in (self.root / name).rglob("**/")]
@@ -112,7 +120,7 @@ class CampaignStore:
             assert is_slug(word), word
         return self.root / FLIGHTS / point / batch.map / pilot / f"{batch.name}.json"
 
-    def _refuse_other(self, wanted: dict[str, Any]) -> None:
+    def _refuse_other(self, wanted: dict[str, Any], allow_mixed: bool) -> None:
         held = canonical.read(self.root / LOCK)
         if (
             not isinstance(held, dict)
@@ -129,6 +137,12 @@ class CampaignStore:
             )
         if held["recipe_id"] != wanted["recipe_id"]:
             raise InputError(f"{self.root} was flown when this recipe meant other scenes; use another --out")
+        other = list(differing_keys(held.get("software"), wanted["software"]))
+        if other and not allow_mixed:
+            raise InputError(
+                f"{self.root} was flown by other software ({'; '.join(other[:6])}); "
+                "add --allow-mixed to accept that, or use another --out"
+            )
 
 
 def check_output(root: Path) -> None:
@@ -153,7 +167,13 @@ def check_output(root: Path) -> None:
 
 def _lock(recipe: FlightRecipe) -> dict[str, Any]:
     plain = recipe.canonical()
-    return {"schema": SCHEMA, "recipe": plain, "recipe_id": recipe_id(plain, SCENE_SEMANTICS)}
+    versions = {name: version(name) for name in ("mitsuba", "drjit", "thermal-scenegen")}
+    return {
+        "schema": SCHEMA,
+        "recipe": plain,
+        "recipe_id": recipe_id(plain, SCENE_SEMANTICS),
+        "software": fingerprint(versions),
+    }
 
 
 def batches_read(
