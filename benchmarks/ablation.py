@@ -1,8 +1,8 @@
 """What each part of the paper's method is worth: the ablation it leaves as future work.
 
-Every variant changes one thing of the proposed method at w_L1 = 100 (embedding interval, source of flow, gain, normalisation
-of S, target, network), is trained with the same seeds on the same dataset, and judged on its test split. Finished runs
-are kept, so a stopped ablation goes on.
+Every variant changes one thing of the proposed method at w_L1 = 100 (embedding interval, source of flow, gain,
+normalisation of S, target, network), is trained with the same seeds on the same dataset, and judged on its test
+split. Finished runs are kept, so a stopped ablation goes on.
 
     python benchmarks/ablation.py DATASET OUT [--profile ci] [--seeds 3] [--jobs 2] [--only flow]
 """

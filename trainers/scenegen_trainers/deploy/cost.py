@@ -14,6 +14,7 @@ import torch
 from torch.utils.flop_counter import FlopCounterMode
 
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.rng import stream
 from scenegen_trainers.deploy.graph import example_inputs
 from scenegen_trainers.inputs.look import compose, look
 from scenegen_trainers.models.checkpoint import Checkpoint
@@ -72,7 +73,7 @@ def cost_of(checkpoint: Checkpoint, graph: bytes, threads: int = 1, repeats: int
     InputError
         If onnxruntime is missing.
     """
-    network, rng = checkpoint.network, np.random.default_rng(0)
+    network, rng = checkpoint.network, stream(0, "cost")
     rows, columns = int(checkpoint.camera["height_px"]), int(checkpoint.camera["width_px"])
     torch.set_num_threads(threads)
     session = onnx_session(graph, threads)

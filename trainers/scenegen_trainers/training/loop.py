@@ -90,7 +90,7 @@ def train(
     state = read_state(out, identity)
     if state is not None and state["step"] == recipe.training.steps and (out / MODEL).is_file():
         return out / MODEL
-    school = _School(recipe, data, out, fabric, identity)
+    school = _School(recipe, data, out, fabric, machine.precision, identity)
     school.teach(state, watch)
     return out / MODEL
 
@@ -99,10 +99,16 @@ class _School:
     """One training at work."""
 
     def __init__(
-        self, recipe: TrainingRecipe, data: TrainingData, out: Path, fabric: Any, identity: dict[str, Any]
+        self,
+        recipe: TrainingRecipe,
+        data: TrainingData,
+        out: Path,
+        fabric: Any,
+        precision: str,
+        identity: dict[str, Any],
     ) -> None:
         self.recipe, self.data, self.out, self.fabric = recipe, data, out, fabric
-        self.identity = identity
+        self.precision, self.identity = precision, identity
         knobs = recipe.training
         self.samples = data.samples("train", recipe, knobs.pairs, keep=knobs.workers == 0)
         self.judged = data.samples("val", recipe, knobs.judge_pairs, keep=True, stored=True)
@@ -191,6 +197,7 @@ class _School:
             "dataset": self.data.record(),
             "torch": str(torch.__version__),
             "threads": torch.get_num_threads(),
+            "precision": self.precision,
         }
         network = self.learner.network.module
         write_checkpoint(self.out / MODEL, network, self.recipe.network_config(), self.data.camera(), record)
