@@ -10,7 +10,7 @@ from typing import Any
 from scenegen.foundation.atomic import make_directories, write_atomic
 from scenegen.foundation.canonical import pretty
 from scenegen_trainers.evaluation.answers import Answer, answers
-from scenegen_trainers.evaluation.bootstrap import named
+from scenegen_trainers.evaluation.bootstrap import Judged, named
 from scenegen_trainers.evaluation.evaluate import Evaluation
 from scenegen_trainers.evaluation.pictures import answer_sheet
 from scenegen_trainers.metrics import DepthReport, DepthScores
@@ -33,8 +33,8 @@ def write_report(
     files = {
         "evaluation.json": pretty(as_json(evaluation)),
         "evaluation.md": as_markdown(evaluation).encode(),
-        "best.png": _sheet("Best answers", ranked[:SHOWN], evaluation, checkpoint, data),
-        "worst.png": _sheet("Worst answers", ranked[::-1][:SHOWN], evaluation, checkpoint, data),
+        "best.png": _sheet("Best answers", _one_per_clip(ranked), evaluation, checkpoint, data),
+        "worst.png": _sheet("Worst answers", _one_per_clip(ranked[::-1]), evaluation, checkpoint, data),
     }
     for name, content in files.items():
         write_atomic(root / name, content)
@@ -121,9 +121,17 @@ def _rows(rows: Iterable[tuple[str, DepthScores, int | None]], *, head: bool = T
     return lines
 
 
+def _one_per_clip(ranked: Sequence[tuple[str, Judged]]) -> list[tuple[str, Judged]]:
+    """The first of each clip: neighbours on a flight look alike."""
+    first: dict[str, tuple[str, Judged]] = {}
+    for key, judged in ranked:
+        first.setdefault(judged.group, (key, judged))
+    return list(first.values())[:SHOWN]
+
+
 def _sheet(
     title: str,
-    ranked: Sequence[tuple[str, Any]],
+    ranked: Sequence[tuple[str, Judged]],
     evaluation: Evaluation,
     checkpoint: Checkpoint,
     data: TrainingData,
