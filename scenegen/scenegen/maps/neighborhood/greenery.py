@@ -25,12 +25,15 @@ _COMMONS = 2.6
 """How much denser trees stand on commons than in gardens."""
 _WIRE_GAP_M, _LOW_M = 0.9, 4.4
 _STREET_PITCH_M = (11.0, 19.0)
-_TREE_TRIANGLES, _DETAIL = 330_000, (0.28, 0.6)
+_TREE_TRIANGLES, _DETAIL = 360_000, (0.28, 1.0)
 """Of all trees together, about; bounds for their share of the usual triangles. Rays pay most for leaves."""
 _SHRUBS = 5
 """Tried per garden; low down they cost rays next to nothing."""
 _SHRUB_DEPTH_M = 0.15
 """How deep shrubs stand: beside a pad the mesh of the ground lies a hand below the relief."""
+_BANK_M, _BANK_FALL_M = 1.5, 0.5
+"""On and above banks that fall so much across twice that way it lies further below."""
+_SIDES = ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,6 +161,9 @@ def build_greenery(
         alike = [r.points for r in rows if r.height_m == height and len(r.points) == corners]
         parts += hedges(alike, height, width, raised, rng)
     place, size = _shrub_spots(parcels, blocked, trees, rng)
+    around = np.stack([raised.relief(place + step) for step in _BANK_M * np.array(_SIDES)])
+    level = np.ptp(around, axis=0) < _BANK_FALL_M
+    place, size = place[level], size[level]
     position = np.column_stack([place, raised.relief(place) - _SHRUB_DEPTH_M])
     return parts + shrubs(position, size, rng.uniform(0.0, 2 * np.pi, len(place)), raised, rng)
 
