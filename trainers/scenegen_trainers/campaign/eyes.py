@@ -17,7 +17,7 @@ from scenegen_render.camera import Camera
 from scenegen_render.sensor.flock import Flock
 from scenegen_render.trace.lit import light
 from scenegen_render.trace.scenery import Scenery, scenery
-from scenegen_render.trace.views import Views
+from scenegen_render.trace.views import Layer, Views
 from scenegen_trainers.campaign.moment import Moment
 from scenegen_trainers.campaign.place import Place
 from scenegen_trainers.campaign.plan import Batch
@@ -93,8 +93,8 @@ class Eyes:
         if self._scenery is None:
             return None
         with self._watch("trace"):
-            want: tuple[str, ...] = ("depth", "radiance") if self._thermal else ("depth",)
-            seen = self._views.look(self._scenery, poses, world_time_s, want)  # type: ignore[arg-type]
+            want: tuple[Layer, ...] = ("depth", "radiance") if self._thermal else ("depth",)
+            seen = self._views.look(self._scenery, poses, world_time_s, want)
         if self._cameras is None or seen.radiance is None:
             return Images(seen.depth, None, None)
         with self._watch("sense"):

@@ -30,7 +30,7 @@ from scenegen_trainers.campaign.plan import Batch, batch_of
 from scenegen_trainers.campaign.recipe import FlightRecipe
 from scenegen_trainers.campaign.record import FlightRecord
 from scenegen_trainers.campaign.report.ink import END_WORDS
-from scenegen_trainers.campaign.run import Campaign
+from scenegen_trainers.campaign.run import Campaign, worker_setup
 from scenegen_trainers.campaign.store import REPLAYS, CampaignStore
 from scenegen_trainers.campaign.worker import Airfield, settle
 from scenegen_trainers.pilots.spec import PilotSpec
@@ -84,13 +84,7 @@ def replay(campaign: Campaign, flight: int) -> list[Path]:
         for k, spec in enumerate(campaign.pilots)
         for name in [f"{map}-{flight:05d}-{point}-{spec.slug}.webp"]
     ]
-    setup = {
-        "root": str(campaign.root.resolve()),
-        "path": str(Path.cwd()),
-        "points": {name: recipe.model_dump(mode="json") for name, recipe in campaign.points.items()},
-        "pilots": [spec.to_json() for spec in campaign.pilots],
-        "flights": campaign.flights,
-    }
+    setup = {**worker_setup(campaign), "flights": campaign.flights}
     made = []
     with Pool(WORKER, setup, campaign.processes, environment=WORKER_ENVIRONMENT) as pool:
         for event in pool.run(tasks):

@@ -157,7 +157,7 @@ def _fly(
     told(Progress(flown, total, here))
     with Pool(
         WORKER,
-        _setup(campaign),
+        worker_setup(campaign),
         campaign.processes,
         environment=WORKER_ENVIRONMENT,
         share_from=SHARE_FROM,
@@ -179,7 +179,8 @@ def _fly(
     return failed
 
 
-def _setup(campaign: Campaign) -> dict[str, Any]:
+def worker_setup(campaign: Campaign) -> dict[str, Any]:
+    """What every worker process of a campaign is told once, as plain data."""
     return {
         "root": str(campaign.root.resolve()),
         "path": str(Path.cwd()),

@@ -13,7 +13,7 @@ from scenegen_flythrough.loop.arena import Arena
 from scenegen_flythrough.loop.asking import Answer, ask
 from scenegen_flythrough.loop.missions import Missions, draw_missions
 from scenegen_flythrough.loop.outcome import Outcome
-from scenegen_flythrough.loop.pilot import Observation, Pilot
+from scenegen_flythrough.loop.pilot import Command, Need, Observation, Pilot
 from scenegen_render.trace.views import Views
 from scenegen_trainers.campaign.eyes import Eyes, Images
 from scenegen_trainers.campaign.moment import Moment, draw_moment
@@ -49,7 +49,7 @@ class Sortie:
             self.missions = missions_of(recipe, place, batch, self.moment)
 
     def fly(
-        self, pilot: Pilot, witness: Witness | None = None, needs: frozenset[str] = frozenset()
+        self, pilot: Pilot, witness: Witness | None = None, needs: frozenset[Need] = frozenset()
     ) -> BatchRecord:
         """Fly all missions of the batch to their ends.
 
@@ -57,13 +57,13 @@ class Sortie:
         ----------
         pilot : Pilot
         witness : callable, optional
-        needs : frozenset of str
+        needs : frozenset of "depth", "thermal"
             What a witness wants to see beyond what the pilot needs.
         """
         recipe, batch, watch = self._recipe, self._batch, self._watch
         arena = Arena(self._place.obstacles, self.moment.clock, self.missions, recipe.loop)
         wanted = frozenset(pilot.needs) | needs
-        eyes = Eyes(self._views, self._place, recipe.dataset, batch, self.moment, wanted, watch)  # type: ignore[arg-type]
+        eyes = Eyes(self._views, self._place, recipe.dataset, batch, self.moment, wanted, watch)
         camera, seed = self._views.camera, _pilot_seed(recipe, batch)
         reason = _began(pilot, self.missions, seed)
         while len(arena.flying):
@@ -124,7 +124,6 @@ def _began(pilot: Pilot, missions: Missions, seed: int) -> str:
 
 def _refused(seen: Observation, reason: str) -> Answer:
     """The answer of a pilot that is not there."""
-    from scenegen_flythrough.loop.pilot import Command
 
     count = len(seen.flight)
     command = Command(np.zeros((count, 3)), seen.yaw_rad.copy())
