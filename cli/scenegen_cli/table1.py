@@ -36,7 +36,11 @@ class Table1:
     recipe: Path | None = None
     """YAML file of recipe keys for all rows; flags win over it."""
     jobs: int = 0
-    """Trainings side by side, one thread each; 0 is one per CPU."""
+    """Trainings side by side, one thread each; 0 is one per CPU, or one on a GPU."""
+    accelerator: Literal["cpu", "gpu"] = "cpu"
+    """On what."""
+    precision: Literal["32-true", "bf16-mixed", "16-mixed"] = "32-true"
+    """Arithmetic."""
     json: bool = False
     """Report as JSON."""
 
@@ -66,7 +70,9 @@ def run(arguments: Sequence[str]) -> int:
         seeds=tuple(range(command.first_seed, command.first_seed + command.seeds)),
         asked=asked,
         split=command.split,
-        processes=processes(command.jobs),
+        processes=1 if command.accelerator == "gpu" and not command.jobs else processes(command.jobs),
+        accelerator=command.accelerator,
+        precision=command.precision,
     )
     result = run_table1(job, lambda name, said: None if command.json else note(f"{name}  {said}"))
     paths = write_table1(result, job.out)

@@ -44,6 +44,8 @@ class Table1Job:
         Judged on.
     processes : int
         Trainings side by side, one thread each.
+    accelerator, precision : str
+        As in `scenegen_trainers.training.machine.Machine`.
     """
 
     data: Path
@@ -53,6 +55,8 @@ class Table1Job:
     asked: Mapping[str, Any]
     split: str = "test"
     processes: int = 1
+    accelerator: str = "cpu"
+    precision: str = "32-true"
 
     def recipe(self, row: Row, seed: int) -> TrainingRecipe:
         """Of one run."""
@@ -123,7 +127,12 @@ def run_table1(job: Table1Job, watch: Callable[[str, str], None] = lambda run, s
     root = make_directories(job.out.parent, job.out.name)
     make_directories(root, RUNS)
     with DirectoryLock(root):
-        setup = {"data": str(job.data.resolve()), "split": job.split}
+        setup = {
+            "data": str(job.data.resolve()),
+            "split": job.split,
+            "accelerator": job.accelerator,
+            "precision": job.precision,
+        }
         with Pool(WORKER, setup, job.processes, environment=_ENVIRONMENT, silence_s=3600.0) as pool:
             for event in pool.run(_tasks(job)):
                 if isinstance(event, Note):

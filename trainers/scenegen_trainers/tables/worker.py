@@ -25,6 +25,7 @@ _SAID_EVERY = 50
 def worker(setup: Mapping[str, Any]) -> Callable[..., dict[str, Any]]:
     """What a worker does with each run it is given."""
     data, split = TrainingData.at(Path(setup["data"])), str(setup["split"])
+    machine = Machine(setup.get("accelerator", "cpu"), precision=setup.get("precision", "32-true"))
 
     def handle(task: Mapping[str, Any], say: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
         recipe = TrainingRecipe.model_validate(task["recipe"])
@@ -34,16 +35,16 @@ def worker(setup: Mapping[str, Any]) -> Callable[..., dict[str, Any]]:
             if taught.step % _SAID_EVERY == 0:
                 say({"said": f"step {taught.step} of {taught.steps}"})
 
-        model = train(recipe, data, out, Machine(), watch)
+        model = train(recipe, data, out, machine, watch)
         say({"said": "judged"})
-        write_atomic(out / SCORES, pretty(_scores(model, data, split)))
+        write_atomic(out / SCORES, pretty(_scores(model, data, split, machine.device())))
         return {}
 
     return handle
 
 
-def _scores(model: Path, data: TrainingData, split: str) -> dict[str, Any]:
-    evaluation = evaluate(read_checkpoint(model), data, split, thorough=False)
+def _scores(model: Path, data: TrainingData, split: str, device: str) -> dict[str, Any]:
+    evaluation = evaluate(read_checkpoint(model), data, split, thorough=False, device=device)
     valid = ValidDepth(furthest_m=evaluation.cap_m)
     report = report_json(evaluation.report)
     return {
