@@ -124,7 +124,6 @@ def _began(pilot: Pilot, missions: Missions, seed: int) -> str:
 
 def _refused(seen: Observation, reason: str) -> Answer:
     """The answer of a pilot that is not there."""
-
     count = len(seen.flight)
     command = Command(np.zeros((count, 3)), seen.yaw_rad.copy())
     return Answer(command, None, np.zeros(count), {int(flight): reason for flight in seen.flight})
