@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -109,3 +111,15 @@ def test_mistakes_are_one_line(
     assert main(arguments) == 2
     said = capsys.readouterr().err.strip()
     assert message in said and "\n" not in said
+
+
+@pytest.mark.parametrize("command", ["train", "evaluate", "table1", "onnx"])
+def test_help_loads_no_torch(command: str) -> None:
+    code = (
+        "import sys\nfrom scenegen_cli.main import main\n"
+        f"assert main(['{command}', '--help']) == 0\n"
+        "heavy = {'torch', 'lightning', 'mitsuba', 'cv2', 'scipy'} & {n.partition('.')[0] for n in sys.modules}\n"
+        "assert not heavy, heavy\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
