@@ -122,10 +122,11 @@ class Recipe(Section):
     def canonical(self) -> dict[str, Any]:
         """Plain data of everything that decides samples; sections of maps that are not used are left out.
 
-        Own scenes enter by their content, wherever their files lie.
+        Own scenes and recordings enter by their content, wherever their files lie.
         """
-        unused = {name for name in MAPS if name not in self.map}
-        plain = self.model_dump(mode="json", exclude={*unused, "scenes"})
+        left_out: dict[str, Any] = {name: True for name in MAPS if name not in self.map}
+        left_out |= {"scenes": True, "flight": {"recorded": {"file"}}}
+        plain = self.model_dump(mode="json", exclude=left_out)
         used = {name: {"sha256": scene.sha256} for name, scene in self.scenes.items() if name in self.map}
         return {**plain, "scenes": used} if used else plain
 
