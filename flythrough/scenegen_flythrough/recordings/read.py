@@ -52,7 +52,9 @@ def recording_of(file: str, sha256: str) -> Recording:
 
 def _existing(file: str) -> Path:
     if not file:
-        raise InputError("flight.recorded.file: give the file again that this recipe's recording was read from")
+        raise InputError(
+            "flight.recorded.file: give the file again that this recipe's recording was read from"
+        )
     path = Path(file)
     if not path.is_file():
         raise InputError(f"{file}: no such file; flight.recorded.file takes a .csv, .tum or .ulg")
