@@ -140,8 +140,10 @@ def sound(name: str, seeds: int) -> tuple[list[np.ndarray], list[np.ndarray]]:
 
 
 def different(grids: list[np.ndarray], heights: list[np.ndarray]) -> None:
-    """Print how much pairs of seeds overlap and how far their heights are apart."""
+    """Print how much pairs of seeds overlap and how far their heights are apart; nothing for a single seed."""
     pairs = list(itertools.combinations(range(len(grids)), 2))[:200]
+    if not pairs:
+        return
     overlap = [(grids[a] & grids[b]).sum() / max((grids[a] | grids[b]).sum(), 1) for a, b in pairs]
     apart = [stats.ks_2samp(heights[a][::7], heights[b][::7]) for a, b in pairs]
     print(
