@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -61,8 +61,19 @@ def create_or_open(
         write_atomic(root / LOCK, canonical.pretty(new))
 
 
-def check_output(root: Path) -> None:
-    """Refuse a directory that is not empty and not a dataset, and symbolic links under our names.
+def check_output(root: Path, names: Collection[str] = _OURS, lock: str = LOCK, kind: str = "dataset") -> None:
+    """Refuse a directory that is not empty and not one of ours, and symbolic links under our names.
+
+    Parameters
+    ----------
+    root : Path
+        An existing path.
+    names : collection of str
+        What we write directly below it.
+    lock : str
+        The file by which one of ours is known.
+    kind : str
+        What it would be, for the messages.
 
     Raises
     ------
@@ -73,13 +84,13 @@ def check_output(root: Path) -> None:
         raise InputError(f"{root} is a symbolic link; give the directory itself")
     if not root.is_dir():
         raise InputError(f"{root} is not a directory")
-    links = [name for name in _OURS if (root / name).is_symlink()]
+    links = [name for name in names if (root / name).is_symlink()]
     if links:
-        raise InputError(f"{root / links[0]} is a symbolic link; a dataset is written into real files only")
-    strangers = sorted(p.name for p in root.iterdir() if p.name not in _OURS and not p.name.startswith("."))
-    if strangers and not (root / LOCK).exists():
+        raise InputError(f"{root / links[0]} is a symbolic link; a {kind} is written into real files only")
+    strangers = sorted(p.name for p in root.iterdir() if p.name not in names and not p.name.startswith("."))
+    if strangers and not (root / lock).exists():
         raise InputError(
-            f"{root} is not empty and not a dataset (it holds {strangers[0]}); choose another --out"
+            f"{root} is not empty and not a {kind} (it holds {strangers[0]}); choose another --out"
         )
 
 

@@ -17,6 +17,7 @@ from typing import Any
 from scenegen.foundation import canonical
 from scenegen.foundation.atomic import make_directories, remove_partials, write_atomic
 from scenegen.foundation.errors import DatasetError, InputError
+from scenegen_datasets import store
 from scenegen_datasets.lock import fingerprint, recipe_id
 from scenegen_datasets.recipe import SCENE_SEMANTICS
 from scenegen_datasets.store import RUN_LOG, WRITER_LOCK, differing_keys
@@ -153,16 +154,7 @@ def check_output(root: Path) -> None:
     InputError
         With what stands in the way.
     """
-    if root.is_symlink() or not root.is_dir():
-        raise InputError(f"--out {root}: is not a directory; name one")
-    links = [name for name in _OURS if (root / name).is_symlink()]
-    if links:
-        raise InputError(f"{root / links[0]} is a symbolic link; a campaign is written into real files only")
-    strangers = sorted(p.name for p in root.iterdir() if p.name not in _OURS and not p.name.startswith("."))
-    if strangers and not (root / LOCK).exists():
-        raise InputError(
-            f"{root} is not empty and not a campaign (it holds {strangers[0]}); choose another --out"
-        )
+    store.check_output(root, _OURS, LOCK, "campaign")
 
 
 def _lock(recipe: FlightRecipe) -> dict[str, Any]:
