@@ -16,15 +16,12 @@ from jaxtyping import Bool, Float32, Int64
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from scenegen.classes import CLASSES, Semantic
+from scenegen.classes import CLASSES, SOLID_GROUND, Semantic
 from scenegen.geometry.part import face_areas
 from scenegen_render import backend
 from scenegen_render.scene import LoadedWorld
 
-GROUND = (
-    Semantic.ROAD, Semantic.SIDEWALK, Semantic.ROAD_MARKING, Semantic.SOIL, Semantic.GRASS, Semantic.SAND,
-    Semantic.ROCK, Semantic.WATER, Semantic.SPORTS_SURFACE,
-)  # fmt: skip
+GROUND = (*SOLID_GROUND, Semantic.WATER)
 """Classes that carry everything else."""
 STANDING = (
     Semantic.TREE, Semantic.CAR, Semantic.LARGE_VEHICLE, Semantic.BOAT, Semantic.PERSON, Semantic.POLE,

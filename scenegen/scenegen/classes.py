@@ -50,6 +50,19 @@ class Semantic(IntEnum):
     OTHER = 34
 
 
+SOLID_GROUND = (
+    Semantic.ROAD,
+    Semantic.SIDEWALK,
+    Semantic.ROAD_MARKING,
+    Semantic.SOIL,
+    Semantic.GRASS,
+    Semantic.SAND,
+    Semantic.ROCK,
+    Semantic.SPORTS_SURFACE,
+)
+"""Classes of land that things stand on; water carries things too, but is not solid."""
+
+
 @dataclass(frozen=True)
 class SemanticClass:
     """One row of the class list.

@@ -15,10 +15,8 @@ from jaxtyping import Float64
 
 from scenegen_flythrough.loop.knobs import DroneLimits
 from scenegen_flythrough.loop.pilot import Command
-from scenegen_flythrough.quadrotor.limits import GRAVITY_MPS2
+from scenegen_flythrough.quadrotor.attitude import DRAG_PER_S, flat_attitude, thrust_mps2
 
-DRAG_PER_S = 0.25
-"""Linear rotor drag [1/s], after Faessler, Franchi and Scaramuzza, doi 10.1109/LRA.2017.2776353; our value."""
 _VELOCITY_LAG_S = 0.3
 """Time constant of the velocity controller; our choice, typical of small autopilots."""
 _YAW_LAG_S = 0.2
@@ -107,15 +105,10 @@ def camera_poses(
     stabilised : bool
         False tilts the camera with the thrust, which alone carries the drone (differential flatness).
     """
-    up = np.zeros_like(state.velocity_mps)
-    up[:, 2] = GRAVITY_MPS2
-    if not stabilised:
-        up += state.acceleration_mps2 + DRAG_PER_S * state.velocity_mps
-    up /= np.linalg.norm(up, axis=1, keepdims=True)
-    yaw = state.yaw_rad
-    left = np.cross(up, np.stack([np.cos(yaw), np.sin(yaw), np.zeros_like(yaw)], axis=1))
-    left /= np.linalg.norm(left, axis=1, keepdims=True)
-    nose = np.cross(left, up)
+    yaw, still = state.yaw_rad, np.zeros_like(state.velocity_mps)
+    moved = (still, still) if stabilised else (state.velocity_mps, state.acceleration_mps2)
+    body = flat_attitude(thrust_mps2(*moved, still), still, yaw, np.zeros_like(yaw)).world_from_body
+    nose, left, up = body[:, :, 0], body[:, :, 1], body[:, :, 2]
     sine, cosine = math.sin(math.radians(mount_pitch_deg)), math.cos(math.radians(mount_pitch_deg))
     poses = np.zeros((len(yaw), 4, 4))
     poses[:, :3, 0] = -left

@@ -12,19 +12,9 @@ import numpy as np
 from jaxtyping import Bool, Float64, Int64
 from scipy.spatial import cKDTree
 
-from scenegen.classes import Semantic
+from scenegen.classes import SOLID_GROUND, Semantic
 from scenegen.geometry.part import Part
 
-GROUND = (
-    Semantic.ROAD,
-    Semantic.SIDEWALK,
-    Semantic.ROAD_MARKING,
-    Semantic.SOIL,
-    Semantic.GRASS,
-    Semantic.SAND,
-    Semantic.ROCK,
-    Semantic.SPORTS_SURFACE,
-)
 _STANDING = (
     Semantic.TREE,
     Semantic.SHRUB,
@@ -74,7 +64,7 @@ def beside_things(part: Part) -> Part:
 
 def _open_sites(part: Part) -> Int64[np.ndarray, "sites"]:
     """Sites of the ground, but not those of lumps, which stand for what lies below a car."""
-    site = np.unique(part.corner_site[np.isin(part.semantic, GROUND)])
+    site = np.unique(part.corner_site[np.isin(part.semantic, SOLID_GROUND)])
     return np.asarray(site[(part.site_normal[site, 2] > 0.5) & (part.site_standoff[site] < 0.05)])
 
 

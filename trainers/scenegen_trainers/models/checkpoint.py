@@ -13,9 +13,7 @@ import torch
 from scenegen.foundation.atomic import write_atomic
 from scenegen.foundation.errors import InputError
 from scenegen_trainers.models.network import DepthNetwork
-
-PROTOCOL = "depth-1"
-"""As `scenegen_trainers.pilots.checkpoint` reads it; a test holds the two together."""
+from scenegen_trainers.pilots.checkpoint import PROTOCOL
 
 NETWORK = f"{DepthNetwork.__module__}:{DepthNetwork.__qualname__}"
 

@@ -6,20 +6,10 @@ import numpy as np
 from jaxtyping import Bool, Float64, Int64, UInt8
 from scipy.ndimage import distance_transform_edt
 
-from scenegen.classes import Semantic
+from scenegen.classes import SOLID_GROUND, Semantic
 from scenegen.geometry.ragged import ragged_grid
 from scenegen.world import HeightField
 
-_GROUND = (
-    Semantic.ROAD,
-    Semantic.SIDEWALK,
-    Semantic.ROAD_MARKING,
-    Semantic.SOIL,
-    Semantic.GRASS,
-    Semantic.SAND,
-    Semantic.ROCK,
-    Semantic.SPORTS_SURFACE,
-)
 _ENOUGH = 0.2
 """Share of the plan that faces of ground classes must cover to be taken for the whole ground."""
 
@@ -56,7 +46,7 @@ def ground_field(
     columns, rows = (np.floor((high - low) / cell).astype(int) + 2).tolist()
     up = normals[:, 2] > _LEVEL
     water = semantic == Semantic.WATER
-    ground = np.isin(semantic, _GROUND)
+    ground = np.isin(semantic, SOLID_GROUND)
 
     def lowest(chosen: Bool[np.ndarray, "faces"]) -> Float64[np.ndarray, "rows columns"]:
         return _lowest(vertices, faces[chosen], low, cell, (rows, columns))
