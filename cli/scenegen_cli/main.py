@@ -15,6 +15,7 @@ COMMANDS = {
     "demo": "make a few pairs in a minute and show where the pictures are",
     "render": "make a dataset, resume one, or grow one",
     "preview": "draw contact sheet and animation of a dataset",
+    "view": "look at a dataset in a browser",
     "info": "what a dataset holds",
     "status": "how far a dataset is while it is being made",
     "verify": "check every byte, array and rule of a dataset",

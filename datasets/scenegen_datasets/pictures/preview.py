@@ -12,10 +12,10 @@ from scenegen.foundation.atomic import make_directories, write_atomic
 from scenegen.foundation.errors import InputError
 from scenegen_datasets.layers import check_layers
 from scenegen_datasets.loader import PairDataset
-from scenegen_datasets.pictures import words
 from scenegen_datasets.pictures.animation import animate
 from scenegen_datasets.pictures.sheet import contact_sheet
 from scenegen_datasets.pictures.shot import Shot
+from scenegen_datasets.pictures.words import clip_words
 from scenegen_datasets.store import read_lock
 from scenegen_render.sensor.scale import CountScale, counts_to_brightness_K
 
@@ -80,21 +80,5 @@ def _shot(sample: dict[str, Any], scale: CountScale) -> Shot:
     }
     counts = np.asarray(sample["thermal"], np.uint16)
     return Shot(
-        sample["key"], _facts(sample["facts"]), counts, counts_to_brightness_K(counts, scale), **layers
-    )
-
-
-def _facts(clip: dict[str, Any]) -> str:
-    """Hour, date, place and weather as a reader wants them."""
-    return "   ".join(
-        (
-            words.time_of_day(float(clip["hour"])),
-            words.date(int(clip["month"]), int(clip["day"])),
-            words.latitude(float(clip["latitude_deg"])),
-            f"sun {float(clip['sun_elevation_deg']):+.0f}°",
-            words.sky(float(clip["cloud_fraction"])),
-            words.wind(float(clip["wind_mps"])),
-            f"mean air {words.celsius(float(clip['air_mean_K']))}",
-            f"flying {float(clip['speed_mps']):.0f} m/s",
-        )
+        sample["key"], clip_words(sample["facts"]), counts, counts_to_brightness_K(counts, scale), **layers
     )

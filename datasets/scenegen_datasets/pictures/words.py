@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 
 
@@ -36,3 +39,19 @@ def wind(speed_mps: float) -> str:
 def celsius(kelvin: float) -> str:
     """Such as ``12 °C``."""
     return f"{kelvin - 273.15:.0f} °C"
+
+
+def clip_words(facts: Mapping[str, Any]) -> str:
+    """Hour, date, place and weather of a clip, as the loader gives them under ``facts``, in one line."""
+    return "   ".join(
+        (
+            time_of_day(float(facts["hour"])),
+            date(int(facts["month"]), int(facts["day"])),
+            latitude(float(facts["latitude_deg"])),
+            f"sun {float(facts['sun_elevation_deg']):+.0f}°",
+            sky(float(facts["cloud_fraction"])),
+            wind(float(facts["wind_mps"])),
+            f"mean air {celsius(float(facts['air_mean_K']))}",
+            f"flying {float(facts['speed_mps']):.0f} m/s",
+        )
+    )

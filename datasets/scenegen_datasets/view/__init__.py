@@ -1,0 +1,1 @@
+"""The viewer: a page on this machine that shows a dataset frame by frame, with numbers under the cursor."""
