@@ -6,26 +6,29 @@ Nothing here depends on how many pairs are asked for, so a dataset can grow: its
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from scenegen_datasets.job import ClipJob
 
 SPLIT_PERIOD = 10
 """Worlds per repetition of the split pattern."""
 
-_SPLIT_OF = {1: "val", 2: "test"}
+SPLIT_OF = {1: "val", 2: "test"}
+"""Worlds of each period that are not for training."""
 
 
-def split_of(world: int) -> str:
+def split_of(world: int, held_out: bool = False) -> str:
     """Split of a world by its index within its map: worlds 1 and 2 of each ten are kept for validation and test.
 
     A whole world belongs to one split, because frames of one world share buildings; val and test come early, so that
-    a dataset of three worlds has all splits.
+    a dataset of three worlds has all splits. All worlds of a map that is `held_out` belong to the test split.
     """
-    return _SPLIT_OF.get(world % SPLIT_PERIOD, "train")
+    return "test" if held_out else SPLIT_OF.get(world % SPLIT_PERIOD, "train")
 
 
-def clips(maps: Sequence[str], clips_per_world: int, pairs_per_clip: int) -> Iterator[ClipJob]:
+def clips(
+    maps: Sequence[str], clips_per_world: int, pairs_per_clip: int, test_maps: Collection[str] = ()
+) -> Iterator[ClipJob]:
     """Yield all clips there will ever be, in plan order; maps take turns world by world.
 
     Parameters
@@ -34,14 +37,23 @@ def clips(maps: Sequence[str], clips_per_world: int, pairs_per_clip: int) -> Ite
         At least one, without repetition.
     clips_per_world, pairs_per_clip : int
         At least 1.
+    test_maps : collection of str
+        Maps that are held out for the test split.
     """
     for ordinal in itertools.count():
         turn, clip = divmod(ordinal, clips_per_world)
         world, which = divmod(turn, len(maps))
-        yield ClipJob(ordinal, maps[which], world, clip, split_of(world), pairs_per_clip)
+        split = split_of(world, maps[which] in test_maps)
+        yield ClipJob(ordinal, maps[which], world, clip, split, pairs_per_clip)
 
 
-def plan(maps: Sequence[str], clips_per_world: int, pairs_per_clip: int, pairs: int) -> tuple[ClipJob, ...]:
+def plan(
+    maps: Sequence[str],
+    clips_per_world: int,
+    pairs_per_clip: int,
+    pairs: int,
+    test_maps: Collection[str] = (),
+) -> tuple[ClipJob, ...]:
     """Clips that hold at least `pairs` pairs: the first ``ceil(pairs / pairs_per_clip)`` of `clips`."""
     count = -(-pairs // pairs_per_clip)
-    return tuple(itertools.islice(clips(maps, clips_per_world, pairs_per_clip), count))
+    return tuple(itertools.islice(clips(maps, clips_per_world, pairs_per_clip, test_maps), count))

@@ -20,6 +20,7 @@ from scenegen_datasets.job import is_map_name
 from scenegen_datasets.layers import DEFAULT_LAYERS, check_layers
 from scenegen_datasets.resolve import Source, merge, resolve
 from scenegen_datasets.scenes import identified, name_scenes
+from scenegen_datasets.splits.knobs import SplitKnobs
 from scenegen_flythrough.knobs import FlightKnobs
 from scenegen_render.camera_knobs import CameraKnobs, preset
 from scenegen_render.exposure.knobs import ExposureKnobs
@@ -60,6 +61,7 @@ class Recipe(Section):
     movers: bool = True
     """Vehicles, people and boats go their ways; off: they stand still where they are at the world's time zero."""
     climate: ClimateKnobs = ClimateKnobs()
+    splits: SplitKnobs = SplitKnobs()
     flight: FlightKnobs = FlightKnobs()
     render: RenderKnobs = RenderKnobs()
     exposure: ExposureKnobs = ExposureKnobs()
@@ -101,6 +103,15 @@ class Recipe(Section):
             raise ValueError("a pair needs at least 'thermal' and 'depth'")
         return layers
 
+    @field_validator("splits")
+    @classmethod
+    def _can_be_split(cls, value: SplitKnobs, info: Any) -> SplitKnobs:
+        if {"map", "climate"} <= info.data.keys():
+            reason = value.contradiction(info.data["map"], info.data["climate"])
+            if reason:
+                raise ValueError(reason)
+        return value
+
     @property
     def stored_layers(self) -> tuple[str, ...]:
         """Layers written, those asked for by the `render` section included."""
@@ -122,10 +133,13 @@ class Recipe(Section):
     def canonical(self) -> dict[str, Any]:
         """Plain data of everything that decides samples; sections of maps that are not used are left out.
 
-        Own scenes and recordings enter by their content, wherever their files lie.
+        Own scenes and recordings enter by their content, wherever their files lie. Splits enter if anything is held
+        out: without that, a recipe keeps the identity it had before there was such a section.
         """
         left_out: dict[str, Any] = {name: True for name in MAPS if name not in self.map}
         left_out |= {"scenes": True, "flight": {"recorded": {"file"}}}
+        if self.splits == SplitKnobs():
+            left_out["splits"] = True
         plain = self.model_dump(mode="json", exclude=left_out)
         used = {name: {"sha256": scene.sha256} for name, scene in self.scenes.items() if name in self.map}
         return {**plain, "scenes": used} if used else plain

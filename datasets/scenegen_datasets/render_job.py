@@ -68,7 +68,8 @@ class Job:
     def clips(self) -> tuple[ClipJob, ...]:
         """The plan, as far as it is to be made."""
         recipe = self.recipe
-        return plan(recipe.map, recipe.clips_per_world, recipe.pairs_per_clip, self.pairs)
+        held = recipe.splits.test_maps
+        return plan(recipe.map, recipe.clips_per_world, recipe.pairs_per_clip, self.pairs, held)
 
     @property
     def bytes(self) -> int:

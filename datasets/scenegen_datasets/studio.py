@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float64
 
-from scenegen.climate.knobs import draw_weather_and_hour
 from scenegen.climate.sun import sun_direction
 from scenegen.foundation.rng import stream
 from scenegen.movers.clock import Clock
@@ -21,6 +20,7 @@ from scenegen_datasets.commit import ShardWriter
 from scenegen_datasets.encode import FrameMeta, encode_frame
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.recipe import Recipe
+from scenegen_datasets.splits.draw import draw_conditions
 from scenegen_datasets.stage import Stage, set_stage
 from scenegen_datasets.stopwatch import Stopwatch
 from scenegen_flythrough.fly import fly
@@ -50,7 +50,7 @@ class Studio:
 
     def __init__(self, recipe: Recipe, root: Path, fingerprint: str) -> None:
         self._recipe, self._root, self._fingerprint = recipe, root, fingerprint
-        self._camera = recipe.camera.camera()
+        self._camera, self._held_out = recipe.camera.camera(), recipe.splits.held_out
         self._tracer = Tracer(self._camera, recipe.tracing)
         self._watch = Stopwatch()
         self._stage: Stage | None = None
@@ -68,8 +68,9 @@ class Studio:
         stage = self._at(job, told)
         path = ("clip", job.map, job.world, job.clip)
         with watch("weather"):
-            rng = stream(self._recipe.seed, *path, "weather")
-            weather, hour = draw_weather_and_hour(self._recipe.climate, stage.exposure.season, rng)
+            weather, hour = draw_conditions(
+                self._recipe.climate, self._held_out, stage.exposure.season, self._recipe.seed, job
+            )
         with watch("solve"):
             state = stage.heat.solve(weather, hour)
         with watch("bake"):
