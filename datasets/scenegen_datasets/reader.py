@@ -39,6 +39,22 @@ class ShardReader:
         CorruptFrameError
             If the shard is missing or short, or the member's bytes are not those that were written.
         """
+        data = self.stored(row, job, member)
+        where = f"{job.shard}: {job.key(int(row['frame']))}.{member}"
+        shape = (int(row["height_px"]), int(row["width_px"]))
+        try:
+            return decode_member(member, layers, data, shape)
+        except CorruptFrameError as error:
+            raise CorruptFrameError(f"{where}: {error}") from None
+
+    def stored(self, row: np.void, job: ClipJob, member: str) -> bytes:
+        """Bytes of one member of the frame of `job` that `row` (checked) describes, as they stand in the shard.
+
+        Raises
+        ------
+        CorruptFrameError
+            If the shard is missing or short, or the bytes are not those that were written.
+        """
         name = member_field(member)
         where = f"{job.shard}: {job.key(int(row['frame']))}.{member}"
         size = int(row[f"{name}_size"])
@@ -51,10 +67,7 @@ class ShardReader:
             raise CorruptFrameError(f"{where}: {error.strerror or error}") from None
         if len(data) != size or zlib.crc32(data) != int(row[f"{name}_crc32"]):
             raise CorruptFrameError(f"{where}: damaged; run `scenegen verify`")
-        try:
-            return decode_member(member, layers, data, shape)
-        except CorruptFrameError as error:
-            raise CorruptFrameError(f"{where}: {error}") from None
+        return data
 
     def close(self) -> None:
         """Close all descriptors."""

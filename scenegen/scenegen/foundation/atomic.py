@@ -48,7 +48,7 @@ class AtomicFile:
                 view = view[os.write(self._descriptor, view) :]
         except OSError as error:
             self.discard()
-            raise _explained(error, self.path) from error
+            raise explained(error, self.path) from error
 
     def commit(self) -> None:
         """Sync, rename to the final name, sync the directory."""
@@ -59,7 +59,7 @@ class AtomicFile:
             sync_directory(self.path.parent)
         except OSError as error:
             self.discard()
-            raise _explained(error, self.path) from error
+            raise explained(error, self.path) from error
 
     def discard(self) -> None:
         """Remove the temporary file, if there still is one."""
@@ -122,7 +122,7 @@ def make_directories(root: Path, relative: str) -> Path:
                     f"{directory} is a link or a file where a directory belongs; move it away"
                 ) from None
         except OSError as error:
-            raise _explained(error, directory) from error
+            raise explained(error, directory) from error
     return directory
 
 
@@ -159,10 +159,11 @@ def _create(path: Path) -> tuple[Path, int]:
         except FileExistsError:
             continue
         except OSError as error:
-            raise _explained(error, path) from error
+            raise explained(error, path) from error
 
 
-def _explained(error: OSError, path: Path) -> ScenegenError:
+def explained(error: OSError, path: Path) -> ScenegenError:
+    """What a failed write means to a user: a full device, or a place that cannot be written."""
     if error.errno in _FULL:
         return NoSpaceError(f"no space left for {path}; free some and run the same command again to continue")
     return InputError(f"cannot write {path}: {error.strerror or error}")
