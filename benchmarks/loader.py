@@ -114,6 +114,7 @@ def main() -> None:
             ("thermal", "depth"),
             ("thermal", "depth", "previous_thermal"),
             ("thermal", "depth", "flow"),
+            ("thermal", "depth", "previous_thermal", "flow"),
             DEFAULT_LAYERS,
         ):
             ms = cpu_per_sample(PairDataset(root, layers=layers, allow_partial=True), order)

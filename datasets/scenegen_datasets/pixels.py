@@ -81,7 +81,7 @@ def _planes(array: NDArray[Any]) -> list[NDArray[Any]]:
 
 def _narrowed(planes: list[NDArray[Any]], layer: Layer) -> NDArray[Any]:
     """Stack channels and go back to the type in memory; what does not fit in it was never written by us."""
-    stacked = planes[0] if len(planes) == 1 else np.stack(planes, axis=-1)
+    stacked = np.ascontiguousarray(planes[0]) if len(planes) == 1 else np.stack(planes, axis=-1)
     if layer.dtype == layer.stored:
         return stacked
     limit = 1 if layer.dtype == "bool" else np.iinfo(layer.dtype).max

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenegen.foundation.errors import CorruptFrameError
+from scenegen_datasets.codecs import plain_exr
 
 _MAGIC = b"v/1\x01\x02\x00\x00\x00"
 _PIXEL_TYPES = (np.dtype(np.uint32), np.dtype(np.float16), np.dtype(np.float32))
@@ -60,6 +61,11 @@ def decode(
     channels : mapping of str to dtype
         Exactly the channels there must be, with their stored types.
 
+    Returns
+    -------
+    dict of str to array
+        Of an uncompressed file they are read-only views of `data`, which are not contiguous.
+
     Raises
     ------
     CorruptFrameError
@@ -67,7 +73,10 @@ def decode(
     """
     import OpenEXR
 
-    _check(data, shape, channels)
+    header, end = _header(data)
+    _check(header, shape, channels)
+    if (header["compression"], header.get("lineOrder")) == (_KINDS[0], b"\0"):
+        return plain_exr.planes(data, end, shape, channels)
     try:
         planes = OpenEXR.File(io.BytesIO(data), True, False, 0).channels()
         return {name: planes[name].pixels for name in channels}
@@ -75,9 +84,10 @@ def decode(
         raise CorruptFrameError(f"EXR does not decode: {str(error).splitlines()[0]}") from None
 
 
-def _check(data: bytes, shape: tuple[int, int], channels: Mapping[str, np.dtype[Any]]) -> None:
-    """Read the header ourselves: channels and sizes are known before the library allocates anything."""
-    header = _header(data)
+def _check(
+    header: Mapping[str, bytes], shape: tuple[int, int], channels: Mapping[str, np.dtype[Any]]
+) -> None:
+    """Channels and sizes are known before the library allocates anything."""
     rows, columns = shape
     if header.get("dataWindow") != struct.pack("<4i", 0, 0, columns - 1, rows - 1):
         raise CorruptFrameError(f"EXR is not {rows}x{columns}")
@@ -87,8 +97,8 @@ def _check(data: bytes, shape: tuple[int, int], channels: Mapping[str, np.dtype[
         raise CorruptFrameError(f"EXR holds other channels than {', '.join(channels)}")
 
 
-def _header(data: bytes) -> dict[str, bytes]:
-    """Attributes of a single-part scan-line file: name, type, size, value, until an empty name."""
+def _header(data: bytes) -> tuple[dict[str, bytes], int]:
+    """Attributes of a single-part scan-line file (name, type, size, value, until an empty name), and where they end."""
     if data[:8] != _MAGIC:
         raise CorruptFrameError("not a single-part scan-line EXR")
     attributes: dict[str, bytes] = {}
@@ -102,7 +112,7 @@ def _header(data: bytes) -> dict[str, bytes]:
         if at >= len(data) or at > _MAX_HEADER_BYTES:
             raise CorruptFrameError("EXR header runs past the file")
         attributes[name.decode("latin-1")] = data[at - size : at]
-    return attributes
+    return attributes, at + 1
 
 
 def _channel_list(value: bytes) -> dict[str, np.dtype[Any]]:

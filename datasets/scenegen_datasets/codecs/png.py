@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenegen.foundation.errors import CorruptFrameError
+from scenegen_datasets.codecs import sub_filter
 from scenegen_datasets.codecs.raster import decoded
 
 _SIGNATURE = b"\x89PNG\r\n\x1a\n"
@@ -39,7 +40,8 @@ def decode(data: bytes, shape: tuple[int, int]) -> NDArray[np.uint16]:
         If it is not a 16-bit grey PNG of `shape`, made of nothing but header, pixels and end.
     """
     _check(data, shape)
-    return decoded(data, shape, np.uint16, "PNG")
+    ours = sub_filter.pixels(data, shape)
+    return decoded(data, shape, np.uint16, "PNG") if ours is None else ours
 
 
 def _check(data: bytes, shape: tuple[int, int]) -> None:
