@@ -123,6 +123,25 @@ def run_table1(job: Table1Job, watch: Callable[[str, str], None] = lambda run, s
     """
     if not job.seeds or len(set(job.seeds)) < len(job.seeds):
         raise InputError("a table needs one seed or more, each once")
+    finish_runs(job, ROWS, watch)
+    return _collected(job)
+
+
+def finish_runs(
+    job: Table1Job, rows: Sequence[Row], watch: Callable[[str, str], None] = lambda run, said: None
+) -> dict[str, Path]:
+    """Train and judge what is missing of some rows.
+
+    Returns
+    -------
+    dict of str to Path
+        Directory of each run, by its name.
+
+    Raises
+    ------
+    InputError
+        As `run_table1`.
+    """
     job.out.parent.mkdir(parents=True, exist_ok=True)
     root = make_directories(job.out.parent, job.out.name)
     make_directories(root, RUNS)
@@ -134,21 +153,22 @@ def run_table1(job: Table1Job, watch: Callable[[str, str], None] = lambda run, s
             "precision": job.precision,
         }
         with Pool(WORKER, setup, job.processes, environment=_ENVIRONMENT, silence_s=3600.0) as pool:
-            for event in pool.run(_tasks(job)):
+            for event in pool.run(_tasks(job, rows)):
                 if isinstance(event, Note):
                     watch(event.task.key, str(event.data["said"]))
                 elif isinstance(event, Done):
                     watch(event.task.key, "done")
                 elif isinstance(event, Failed):
                     raise InputError(f"{event.task.key}: {event.failure.message}")
-    return _collected(job)
+    names = [run_name(row, seed) for row in rows for seed in job.seeds]
+    return {name: job.out / RUNS / name for name in names}
 
 
-def _tasks(job: Table1Job) -> list[Task]:
+def _tasks(job: Table1Job, rows: Sequence[Row]) -> list[Task]:
     """Seed by seed, so that a table that was stopped is complete for some seeds."""
     tasks = []
     for seed in job.seeds:
-        for row in ROWS:
+        for row in rows:
             name = run_name(row, seed)
             payload = {
                 "recipe": job.recipe(row, seed).model_dump(mode="json"),
