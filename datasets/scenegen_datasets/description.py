@@ -11,10 +11,12 @@ from scenegen.foundation import canonical
 from scenegen.foundation.errors import DatasetError
 from scenegen.materials.table import materials
 from scenegen_datasets.clip import ClipRecord
+from scenegen_datasets.documents import DESCRIPTION
 from scenegen_datasets.job import SPLITS, ClipJob
 from scenegen_datasets.layers import LAYERS, MEMBERS
 from scenegen_datasets.receipt import SCHEMA
 from scenegen_datasets.seal import check_seal, read_bounded, with_seal
+from scenegen_datasets.shape import misshapen
 
 CONVENTIONS = {
     "world": "right-handed ENU: x east, y north, z up [m]",
@@ -107,6 +109,9 @@ def read_description(path: Path) -> dict[str, Any]:
     body = check_seal(value, str(path))
     if canonical.pretty(value) != data:
         raise DatasetError(f"{path}: changed or damaged (not laid out as it was written)")
+    wrong = misshapen(body, DESCRIPTION)
+    if wrong:
+        raise DatasetError(f"{path}: makes no sense: {wrong}; run `scenegen verify`")
     return body
 
 

@@ -17,6 +17,7 @@ from scenegen_datasets.croissant import croissant
 from scenegen_datasets.description import describe, sealed_description
 from scenegen_datasets.index import Rows, rows_of, write_index
 from scenegen_datasets.info import DatasetInfo, info
+from scenegen_datasets.inside import sha256_inside, walk
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.manifest import file_sha256, manifest_bytes
 from scenegen_datasets.receipt import Receipt, read_receipt
@@ -34,6 +35,7 @@ from scenegen_datasets.store import (
     read_lock,
 )
 
+PREVIEW = "preview"
 _SEMVER = re.compile(r"(0|[1-9]\d*)\.(0|[1-9]\d*)\.(0|[1-9]\d*)")
 
 
@@ -135,8 +137,6 @@ def finish(root: Path, jobs: Sequence[ClipJob], *, version: str = "1.0.0") -> Da
 
 
 def _preview_sums(root: Path) -> dict[str, str]:
-    preview = root / "preview"
-    if not preview.is_dir() or preview.is_symlink():
+    if not (root / PREVIEW).is_dir() or (root / PREVIEW).is_symlink():
         return {}
-    pictures = (p for p in sorted(preview.rglob("*")) if p.is_file() and not p.is_symlink())
-    return {str(p.relative_to(root)): file_sha256(p) for p in pictures}
+    return {e.path: sha256_inside(root, e.path) for e in walk(root, PREVIEW) if e.kind == "file"}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,14 +11,18 @@ from typing import Any
 
 from scenegen.foundation.errors import DatasetError
 from scenegen_datasets.clip import ClipRecord
+from scenegen_datasets.documents import RECEIPT
+from scenegen_datasets.inside import read_inside, walk
 from scenegen_datasets.job import SPLITS
 from scenegen_datasets.layers import LAYERS, MEMBERS, max_member_bytes
-from scenegen_datasets.seal import read_bounded, sealed, sealed_body, unsealed
+from scenegen_datasets.seal import sealed, sealed_body, unsealed
+from scenegen_datasets.shape import misshapen
 
 SCHEMA = 1
 """Version of receipts, index and ``dataset.json``; a reader refuses what is newer than itself."""
 
 _MAX_BYTES = 64 << 20
+_RECEIPT = re.compile(r"(?s)receipts/[a-z]+/[^/]+/[^/.][^/]*\.json")
 _SHARD = re.compile(rb'"shard":\{"path":"([^"]+)","sha256":"[0-9a-f]{64}","size":([0-9]{1,15})\}')
 
 
@@ -118,11 +123,14 @@ def read_receipt(root: Path, path: str) -> Receipt:
     DatasetError
         If it is missing, damaged, of a newer schema, or does not say what a receipt at this place must say.
     """
-    data = unsealed("receipt", read_bounded(root / path, _MAX_BYTES), path)
+    data = unsealed("receipt", read_inside(root, path, _MAX_BYTES), path)
     if data.get("schema_version") != SCHEMA:
         raise DatasetError(
             f"{path}: schema {data.get('schema_version')}, this version reads {SCHEMA}; update scenegen"
         )
+    wrong = misshapen(data, RECEIPT)
+    if wrong:
+        raise DatasetError(f"{path}: not a receipt ({wrong})")
     try:
         receipt = _receipt(data)
     except (KeyError, TypeError, ValueError, AttributeError) as error:
@@ -141,7 +149,7 @@ def promised_size(root: Path, path: str) -> int:
     DatasetError
         If the receipt is missing, damaged, or of another clip.
     """
-    body = sealed_body("receipt", read_bounded(root / path, _MAX_BYTES), path)
+    body = sealed_body("receipt", read_inside(root, path, _MAX_BYTES), path)
     match = _SHARD.search(body)
     if match is None or match[1].decode() != shard_of(path):
         raise DatasetError(f"{path}: speaks of another clip")
@@ -198,15 +206,8 @@ def _inconsistency(receipt: Receipt, path: str) -> str | None:
 
 def receipt_paths(root: Path) -> list[str]:
     """Paths of all receipts below a dataset, sorted; links are not followed."""
-    found = []
+    found: list[str] = []
     for split in SPLITS:
-        base = root / "receipts" / split
-        if base.is_dir() and not base.is_symlink():
-            for world in base.iterdir():
-                if world.is_dir() and not world.is_symlink():
-                    found += [
-                        f"receipts/{split}/{world.name}/{f.name}"
-                        for f in world.iterdir()
-                        if f.suffix == ".json"
-                    ]
-    return sorted(p for p in found if not Path(p).name.startswith("."))
+        with contextlib.suppress(DatasetError):  # no clip of this split yet
+            found += [e.path for e in walk(root, f"receipts/{split}") if _RECEIPT.fullmatch(e.path)]
+    return sorted(found)

@@ -9,6 +9,7 @@ from typing import Any
 
 from scenegen.foundation import canonical
 from scenegen.foundation.errors import DatasetError
+from scenegen_datasets.inside import read_inside
 
 _MIDDLE = b',"sha256":"'
 _TAIL = 64 + len(b'"}\n')
@@ -77,12 +78,9 @@ def read_bounded(path: Path, max_bytes: int) -> bytes:
     Raises
     ------
     DatasetError
-        If it is missing, a link, or larger.
+        If it is missing, a link, no plain file, or larger.
     """
-    if path.is_symlink() or not path.is_file():
-        raise DatasetError(f"{path}: missing")
-    with path.open("rb") as file:
-        data = file.read(max_bytes + 1)
-    if len(data) > max_bytes:
-        raise DatasetError(f"{path}: larger than the {max_bytes} bytes a sound file can have")
-    return data
+    try:
+        return read_inside(path.parent, path.name, max_bytes)
+    except DatasetError as error:
+        raise DatasetError(f"{path.parent}/{error}") from None

@@ -9,9 +9,12 @@ from typing import Any
 from scenegen.foundation import canonical
 from scenegen.foundation.atomic import remove, remove_partials, write_atomic
 from scenegen.foundation.errors import DatasetError, InputError, NoSpaceError
+from scenegen_datasets import documents
+from scenegen_datasets.inside import walk
 from scenegen_datasets.lock import stable
 from scenegen_datasets.receipt import promised_size, receipt_paths, shard_of
 from scenegen_datasets.seal import read_bounded
+from scenegen_datasets.shape import misshapen
 
 RECIPE, LOCK, DATASET, MANIFEST = "recipe.yaml", "recipe.lock.json", "dataset.json", "MANIFEST.sha256"
 INDEX, CLIPS, CARD, CROISSANT = "index.npy", "clips.jsonl", "README.md", "croissant.json"
@@ -104,20 +107,14 @@ def read_lock(root: Path) -> dict[str, Any]:
     DatasetError
         If the lock is damaged.
     """
-    if not (root / LOCK).is_file():
+    if not (root / LOCK).exists():
         raise InputError(f"no dataset at {root} (it has no {LOCK})")
     value = canonical.parse(read_bounded(root / LOCK, _MAX_LOCK_BYTES), str(root / LOCK))
-    wanted = {
-        "name": str,
-        "recipe": dict,
-        "recipe_id": str,
-        "fingerprint": dict,
-        "fingerprint_id": str,
-        "mixed_with": list,
-    }
-    if not isinstance(value, dict) or any(not isinstance(value.get(k), t) for k, t in wanted.items()):
-        raise DatasetError(f"{root / LOCK}: not a recipe lock")
-    return value
+    wrong = misshapen(value, documents.LOCK)
+    if wrong:
+        raise DatasetError(f"{root / LOCK}: not a recipe lock ({wrong})")
+    held: dict[str, Any] = value
+    return held
 
 
 def finished(root: Path) -> set[str]:
@@ -139,8 +136,8 @@ def clean(root: Path) -> None:
     remove_partials(root)
     for folder in FOLDERS:
         if (root / folder).is_dir() and not (root / folder).is_symlink():
-            for directory in [root / folder, *(p for p in (root / folder).rglob("*") if p.is_dir())]:
-                remove_partials(directory)
+            for directory in [folder, *(e.path for e in walk(root, folder) if e.kind == "folder")]:
+                remove_partials(root / directory)
 
 
 def differing_keys(old: Any, new: Any, path: str = "") -> Iterator[str]:

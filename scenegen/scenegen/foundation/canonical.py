@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,9 @@ from scenegen.foundation.errors import DatasetError
 
 MAX_JSON_BYTES = 256 << 20
 """No file this project writes as one JSON document comes near it."""
+
+MAX_VALUES = 4_000_000
+"""Values in one document; each costs up to a hundred bytes of memory, however few it takes in the file."""
 
 _MAX_DEPTH = 64
 
@@ -60,14 +64,20 @@ def parse(data: bytes, where: str, *, max_bytes: int = MAX_JSON_BYTES) -> Any:
     Raises
     ------
     DatasetError
-        If it is too long, too deeply nested, not UTF-8, not JSON, or holds NaN or infinity.
+        If it is too long, too deeply nested, not UTF-8, not JSON, or holds NaN, infinity (``1e999`` is one) or half a
+        surrogate pair, which nothing could write again.
     """
     if len(data) > max_bytes:
         raise DatasetError(
             f"{where}: {len(data)} bytes of JSON, more than the {max_bytes} a sound file can have"
         )
+    if data.count(b",") + data.count(b"[") + data.count(b"{") > MAX_VALUES:
+        raise DatasetError(f"{where}: more than the {MAX_VALUES} values a sound file can have")
     try:
-        value = json.loads(data, parse_constant=_refuse_constant)
+        text = data.decode()
+        value = json.loads(text, parse_constant=_refuse_constant, parse_float=_finite)
+        if "\\u" in text:
+            json.dumps(value, ensure_ascii=False).encode()
     except RecursionError:
         raise DatasetError(f"{where}: JSON nested too deeply") from None
     except ValueError as error:
@@ -88,6 +98,13 @@ def read(path: Path, *, max_bytes: int = MAX_JSON_BYTES) -> Any:
 
 def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is not a number this project writes")
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise ValueError(f"{text[:20]} is beyond any number this project writes")
+    return value
 
 
 def _depth_exceeds(value: Any, limit: int) -> bool:
