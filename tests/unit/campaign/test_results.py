@@ -17,10 +17,11 @@ from scenegen_trainers.campaign.report.charts import Mark, sweep_chart
 from scenegen_trainers.campaign.report.page import page, write_page
 from scenegen_trainers.campaign.report.plan_svg import plan_svg
 from scenegen_trainers.campaign.report.plan_view import SIDE_PX, Frame, relief
-from scenegen_trainers.campaign.results import flight_rows, gather, write
+from scenegen_trainers.campaign.results import flight_rows, gather, labels, write
 from scenegen_trainers.campaign.statistics import wilson
 from scenegen_trainers.campaign.store import CampaignStore
 from scenegen_trainers.campaign.sweep import parse_sweep
+from scenegen_trainers.pilots.spec import PilotSpec
 
 CRASHES = {"oracle": (3,), "blind": (1, 2, 3, 7, 8)}
 
@@ -46,6 +47,31 @@ def test_figures_are_those_of_the_flights(filled: Path) -> None:
     paired = duel.paired
     assert (paired.both, paired.first_only, paired.second_only, paired.neither) == (1, 0, 4, 5)
     assert paired.p == pytest.approx(0.125)
+
+
+def network(path: str, planner: str = "waypoint", sha256: str = "a") -> PilotSpec:
+    return PilotSpec("file", path, planner, sha256)
+
+
+def test_pilots_are_called_as_briefly_as_tells_them_apart(tmp_path: Path) -> None:
+    for words, expected in (
+        ((network("/a/x.pt"), network("/a/y.pt")), ("x", "y")),
+        ((network("/a/x.pt"), network("/a/x.pt", "straight")), ("x (waypoint)", "x (straight)")),
+        ((network("/a/model.pt"), network("/b/model.pt")), ("a/model (waypoint)", "b/model (waypoint)")),
+        ((network("/a/c/m.pt"), network("/b/c/m.pt")), ("1: m (waypoint)", "2: m (waypoint)")),
+    ):
+        assert labels(flown.campaign(tmp_path, pilots=words)) == expected
+
+
+def test_the_first_two_of_several_pilots_are_compared(tmp_path: Path) -> None:
+    pilots = (flown.ORACLE, flown.BLIND, network("/a/m.pt"))
+    asked = flown.campaign(tmp_path / "c", pilots=pilots)
+    flown.fill(asked, {**CRASHES, "m": (0,)})
+    results = gather(asked)
+    assert [line.collision.count for line in results.lines] == [1, 5, 1]
+    (duel,) = results.duels
+    assert (duel.first, duel.second) == ("oracle", "blind")
+    assert page(asked, results).count("<td>m</td>") >= 1
 
 
 def test_fewer_flights_are_a_campaign_of_their_own(filled: Path) -> None:

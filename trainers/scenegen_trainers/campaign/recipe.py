@@ -19,7 +19,7 @@ DIFFICULTY: Mapping[str, float] = MappingProxyType(
 """`mission.difficulty` of each map where a recipe leaves it open: such that the oracle collides in at most 5 % of 400
 flights, and a blind pilot in 40 to 85 %. Other scenes take the key's own default."""
 
-_NOT_FLOWN = ("layers", "clips_per_world", "pairs_per_clip", "flight")
+_NOT_FLOWN = ("layers", "clips_per_world", "pairs_per_clip", "flight", "splits")
 """Keys of the dataset that decide nothing about a flight."""
 
 

@@ -34,7 +34,7 @@ class Results:
     lines : tuple of Line
         One per point, map and pilot.
     duels : tuple of Duel
-        Where two pilots flew.
+        Of the first two pilots.
     """
 
     flown: Flown
@@ -43,11 +43,16 @@ class Results:
 
 
 def labels(campaign: Campaign) -> tuple[str, ...]:
-    """What the pilots are called in tables: their names, with the planner where two have one name."""
-    names = [spec.name for spec in campaign.pilots]
-    if len(set(names)) == len(names):
-        return tuple(names)
-    return tuple(f"{spec.name} ({spec.planner})" for spec in campaign.pilots)
+    """What the pilots are called in tables: as the campaign says, or as briefly as tells them apart."""
+    pilots = campaign.pilots
+    choices = (
+        campaign.names,
+        tuple(spec.name for spec in pilots),
+        tuple(f"{spec.name} ({spec.planner})" for spec in pilots),
+        tuple(f"{Path(spec.word).parent.name}/{spec.name} ({spec.planner})" for spec in pilots),
+        tuple(f"{k}: {spec.name} ({spec.planner})" for k, spec in enumerate(pilots, 1)),
+    )
+    return next(names for names in choices if len(set(names)) == len(pilots))
 
 
 def gather(campaign: Campaign) -> Results:
@@ -66,7 +71,7 @@ def gather(campaign: Campaign) -> Results:
                 flown[point, map, label] = found
                 lines.append(summarise(point, map, label, records))
                 sides.append((label, records))
-            if len(sides) == 2:
+            if len(sides) > 1:
                 duels.append(duel(point, map, sides[0], sides[1]))
     return Results(flown, tuple(lines), tuple(duels))
 

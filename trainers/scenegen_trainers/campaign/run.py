@@ -37,7 +37,7 @@ class Campaign:
     points : mapping of str to FlightRecipe
         Points of a sweep by name; a campaign that sweeps nothing has one, `BASE_POINT`.
     pilots : tuple of PilotSpec
-        One, or two that are compared.
+        One or several; the first two are compared.
     flights : int
         Of each pilot over each map, at each point.
     root : Path
@@ -46,6 +46,8 @@ class Campaign:
         What `points` differ by.
     allow_mixed : bool
         Add to flights that other software flew.
+    names : tuple of str
+        What tables call the pilots; empty calls them by file or name.
     """
 
     recipe: FlightRecipe
@@ -56,6 +58,7 @@ class Campaign:
     processes: int
     sweep: tuple[Point, ...] = ()
     allow_mixed: bool = False
+    names: tuple[str, ...] = ()
 
     @property
     def swept(self) -> bool:

@@ -19,8 +19,8 @@ END_WORDS: Mapping[str, str] = {
     "timeout": "ran out of time",
     "pilot": "pilot failed",
 }
-PILOT_COLOUR = ("#7db7ff", "#ffb35c")
-"""Of the first and the second pilot."""
+PILOT_COLOUR = ("#7db7ff", "#ffb35c", "#4fc3a1", "#b18cf0")
+"""Of the first pilot, the second, ..."""
 
 
 def text(words: object) -> str:

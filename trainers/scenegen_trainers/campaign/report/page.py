@@ -72,7 +72,7 @@ def _table(lines: Sequence[Line], campaign: Campaign) -> str:
     )
     rows = []
     for line in lines:
-        colour = PILOT_COLOUR[names.index(line.pilot)]
+        colour = PILOT_COLOUR[names.index(line.pilot) % len(PILOT_COLOUR)]
         first = f"<td>{text(line.point)}</td>" if campaign.swept else ""
         rows.append(
             f"<tr>{first}<td>{text(line.map)}</td><td>{text(line.pilot)}</td>"
