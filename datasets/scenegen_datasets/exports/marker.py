@@ -1,0 +1,98 @@
+"""What proves an export: who it is, and which clips of it are whole."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from scenegen.foundation import canonical
+from scenegen.foundation.atomic import make_directories, remove_partials, write_atomic
+from scenegen.foundation.errors import DatasetError, InputError
+from scenegen_datasets.exports.format import Written
+from scenegen_datasets.seal import read_bounded, sealed, unsealed
+from scenegen_datasets.store import check_output, differing_keys
+
+FOLDER = ".export"
+"""What is ours in an export; readers that list its directory pass over names with a dot."""
+
+IDENTITY = f"{FOLDER}/identity.json"
+SUMMARY = "export.json"
+"""Written last: an export with it is complete."""
+
+_CLIPS, _MAX_BYTES = f"{FOLDER}/clips", 64 << 20
+
+
+@dataclass(frozen=True)
+class Marker:
+    """Proof of one clip.
+
+    Attributes
+    ----------
+    files : mapping of str to int
+        Size of every file by its path below the export.
+    written : Written
+    """
+
+    files: Mapping[str, int]
+    written: Written
+
+
+def claim(root: Path, identity: Mapping[str, Any]) -> None:
+    """Make `root` the home of the export of this identity, or prove that it is. Call it with the directory's lock held.
+
+    Raises
+    ------
+    InputError
+        If it holds something else, naming what differs.
+    """
+    check_output(root, (), IDENTITY, "export")
+    path = root / IDENTITY
+    if not path.exists():
+        make_directories(root, _CLIPS)
+        write_atomic(path, sealed("export", identity))
+        return
+    try:
+        found = unsealed("export", read_bounded(path, _MAX_BYTES), str(path))
+    except DatasetError as error:
+        raise InputError(f"{error}; remove {root} and export again") from None
+    asked = canonical.parse(canonical.canonical(dict(identity)), "export")
+    differing = list(differing_keys(found, asked))
+    if differing:
+        raise InputError(f"{root} holds another export ({'; '.join(differing[:6])}); choose another --out")
+
+
+def write_marker(root: Path, clip: str, marker: Marker) -> None:
+    """Declare a clip whole; its files are already where they belong."""
+    make_directories(root, _CLIPS)
+    body = {
+        "files": dict(marker.files),
+        "counts": dict(marker.written.counts),
+        "facts": dict(marker.written.facts),
+    }
+    write_atomic(_path(root, clip), sealed("clip", body))
+
+
+def read_marker(root: Path, clip: str) -> Marker | None:
+    """Marker of a clip, or None if it has none, a damaged one, or one whose files are gone or of other sizes."""
+    path = _path(root, clip)
+    if not path.is_file():
+        return None
+    try:
+        body = unsealed("clip", read_bounded(path, _MAX_BYTES), str(path))
+        marker = Marker(body["files"], Written(body["counts"], body["facts"]))
+        sizes = {name: (root / name).lstat().st_size for name in marker.files}
+    except (DatasetError, KeyError, OSError):
+        return None
+    return marker if sizes == marker.files else None
+
+
+def clean(root: Path) -> None:
+    """Remove unfinished markers of killed writers. Call it with the directory's lock held."""
+    for directory in (root, root / FOLDER, root / _CLIPS):
+        remove_partials(directory)
+
+
+def _path(root: Path, clip: str) -> Path:
+    return root / _CLIPS / f"{clip}.json"

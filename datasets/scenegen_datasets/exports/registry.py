@@ -1,0 +1,29 @@
+"""All formats by name."""
+
+from __future__ import annotations
+
+from scenegen.foundation.errors import InputError, nearest
+from scenegen_datasets.exports.format import Format
+from scenegen_datasets.exports.formats import kitti, unpack
+
+FORMATS: dict[str, Format] = {
+    each.name: each
+    for each in (
+        unpack.FORMAT,
+        kitti.FORMAT,
+    )
+}
+"""In the order people see them."""
+
+
+def format_called(name: str) -> Format:
+    """Look a format up.
+
+    Raises
+    ------
+    InputError
+        For a name that is none; names the nearest.
+    """
+    if name not in FORMATS:
+        raise InputError(f"--to {name}: unknown format{nearest(name, FORMATS)}")
+    return FORMATS[name]
