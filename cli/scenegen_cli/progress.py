@@ -66,6 +66,10 @@ class Meter:
             self._task = None
         self._show("verifying", done, total, f"clip {done}/{total}")
 
+    def exported(self, done: int, total: int) -> None:
+        """Clips were exported."""
+        self._show("exporting", done, total, f"clip {done}/{total}")
+
     def _show(self, doing: str, done: int, total: int, what: str) -> None:
         now = time.monotonic()
         if self._quiet or total == 0:
