@@ -30,7 +30,9 @@ CONVENTIONS = {
 }
 """The conventions a reader needs, repeated in every dataset."""
 
-_MAX_BYTES = 64 << 20
+MAX_BYTES = 64 << 20
+"""No sound ``dataset.json`` is larger."""
+
 _RANGES = ("hour", "latitude_deg", "sun_elevation_deg", "speed_mps", "clearance_m")
 
 
@@ -96,8 +98,12 @@ def read_description(path: Path) -> dict[str, Any]:
     DatasetError
         If it is missing, damaged, or of a newer schema.
     """
-    data = read_bounded(path, _MAX_BYTES)
-    value = canonical.parse(data, str(path))
+    return description_of(read_bounded(path, MAX_BYTES), str(path))
+
+
+def description_of(data: bytes, path: str) -> dict[str, Any]:
+    """Read the content of a ``dataset.json`` that lies at `path`; errors as `read_description`."""
+    value = canonical.parse(data, path)
     if (
         isinstance(value, dict)
         and isinstance(value.get("schema_version"), int)
@@ -106,7 +112,7 @@ def read_description(path: Path) -> dict[str, Any]:
         raise DatasetError(
             f"{path}: schema {value['schema_version']}, this version reads {SCHEMA}; update scenegen"
         )
-    body = check_seal(value, str(path))
+    body = check_seal(value, path)
     if canonical.pretty(value) != data:
         raise DatasetError(f"{path}: changed or damaged (not laid out as it was written)")
     wrong = misshapen(body, DESCRIPTION)

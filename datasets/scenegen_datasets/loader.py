@@ -7,23 +7,27 @@ Every byte is checked against its CRC-32 before it is decoded: damage raises `Co
 from __future__ import annotations
 
 import operator
-from collections.abc import Iterator, Sequence
+from collections import OrderedDict
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, SupportsIndex
 
 import numpy as np
 
-from scenegen.foundation.errors import CorruptFrameError, InputError, nearest
+from scenegen.foundation.errors import CorruptFrameError, DatasetError, InputError, nearest
 from scenegen_datasets.index import checked, job_of
 from scenegen_datasets.job import SPLITS
 from scenegen_datasets.layers import LAYERS, check_layers, layers_by_member
 from scenegen_datasets.reader import ShardReader
+from scenegen_datasets.remote import files_at, plain_root
 from scenegen_datasets.source import Source, open_source
 
 PREVIOUS = "previous_thermal"
 """Pseudo-layer: the thermal frame before."""
 
 Sample = dict[str, Any]
+
+_FACTS_KEPT = 1024
 
 
 class PairDataset:
@@ -32,6 +36,7 @@ class PairDataset:
     Parameters
     ----------
     path : str or Path
+        A directory, or a URL of a finished dataset: ``s3://``, ``gs://``, ``hf://``, ``https://`` ... (extra `remote`).
     split : str or None
         ``train``, ``val``, ``test``; None for all.
     layers : sequence of str
@@ -44,6 +49,13 @@ class PairDataset:
         Frames between the starts of two sequences of one clip. Sequences never cross clips.
     allow_partial : bool
         Read what is there of a dataset that still grows.
+    storage_options : mapping, optional
+        What fsspec's file system wants to know about a URL: keys, end points.
+
+    Attributes
+    ----------
+    root : Path or str
+        The directory, or the URL.
 
     Raises
     ------
@@ -66,6 +78,7 @@ class PairDataset:
         frame_skip: int = 0,
         seq_stride: int = 1,
         allow_partial: bool = False,
+        storage_options: Mapping[str, Any] | None = None,
     ) -> None:
         if split is not None and split not in SPLITS:
             raise InputError(f"unknown split '{split}'{nearest(split, SPLITS)}")
@@ -76,19 +89,21 @@ class PairDataset:
         ):
             if value < least:
                 raise InputError(f"{name} is {value}; it must be at least {least}")
-        self.root = Path(path)
+        self.root = plain_root(path)
         self.split = split
         self.layers = check_layers(name for name in layers if name != PREVIOUS)
         self._previous = PREVIOUS in layers
         self._steps = np.arange(seq_length) * (frame_skip + 1)
         self._stride = seq_stride
         self._allow_partial = allow_partial
+        self._storage_options = storage_options
         self._open()
 
     def _open(self, source: Source | None = None) -> None:
-        self._source = source or open_source(self.root, self._allow_partial)
-        self._reader = ShardReader(self.root)
-        self._facts: dict[int, dict[str, Any]] = {}
+        files = files_at(self.root, self._storage_options)
+        self._source = source or open_source(self.root, self._allow_partial, files)
+        self._reader = ShardReader(self.root, files)
+        self._facts: OrderedDict[int, dict[str, Any]] = OrderedDict()
         stored = self._source.layers
         missing = [x for x in (*self.layers, *(("thermal",) if self._previous else ())) if x not in stored]
         if missing and len(self._source.rows):
@@ -101,8 +116,7 @@ class PairDataset:
 
     def _count_sequences(self) -> None:
         """Sequences per clip, and their running total: sample i is found by bisection, without a list of samples."""
-        rows, starts = self._source.rows, self._source.starts
-        first = rows[starts]
+        first = self._source.heads
         span = int(self._steps[-1]) + 1
         pairs = first["frames"].astype(np.int64) - 1
         counts = np.maximum((pairs - span) // self._stride + 1, 0)
@@ -135,22 +149,25 @@ class PairDataset:
         first = int(self._source.starts[clip]) + 1 + (at - before) * self._stride
         frames = [self._frame(first + int(step), clip) for step in self._steps]
         sample = frames[0] if len(frames) == 1 else _stacked(frames)
-        if clip not in self._facts:
-            self._facts[clip] = _facts(self._source.facts(clip))
-        sample["facts"] = dict(self._facts[clip])
+        sample["facts"] = self._clip_facts(clip)
         return sample
+
+    def _clip_facts(self, clip: int) -> dict[str, Any]:
+        """Facts of a clip; those of the clips seen last are kept."""
+        facts = self._facts.get(clip)
+        if facts is None:
+            facts = self._facts[clip] = _facts(self._source.facts(clip))
+            if len(self._facts) > _FACTS_KEPT:
+                self._facts.popitem(last=False)
+        return dict(facts)
 
     def _frame(self, position: int, clip: int) -> Sample:
         row = checked(self._source.rows[position])
         if int(row["frame"]) != position - int(self._source.starts[clip]):
-            raise CorruptFrameError(
-                f"{self.root / 'index.npy'}: rows are out of order; run `scenegen verify`"
-            )
+            raise CorruptFrameError(f"{self.root}/index.npy: rows are out of order; run `scenegen verify`")
         job = job_of(row)
-        sample: Sample = {}
-        for member, group in self._groups.items():
-            arrays = self._reader.arrays(row, job, member, group)
-            sample |= {layer.name: arrays[layer.name] for layer in group if layer.name in self.layers}
+        arrays = self._reader.frame(row, job, self._groups)
+        sample: Sample = {name: arrays[name] for name in self.layers}
         if self._previous:
             before = checked(self._source.rows[position - 1])
             sample[PREVIOUS] = self._reader.arrays(before, job, "thermal.png", (LAYERS["thermal"],))[
@@ -173,14 +190,17 @@ class PairDataset:
 
         A growing dataset travels as it was seen here, so that all workers agree on its length.
         """
-        state = {k: v for k, v in self.__dict__.items() if k not in ("_reader", "_facts")}
+        state = {k: v for k, v in self.__dict__.items() if k not in ("_reader", "_facts", "_ends")}
         if isinstance(self._source.rows, np.memmap):
-            state["_source"] = None
+            state["_source"] = self._source.content_id
         return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
-        self._open(state["_source"])
+        source = state["_source"]
+        self._open(source if isinstance(source, Source) else None)
+        if not isinstance(source, Source) and self._source.content_id != source:
+            raise DatasetError(f"{self.root} changed while it was being read; open it again")
 
 
 def _stacked(frames: list[Sample]) -> Sample:

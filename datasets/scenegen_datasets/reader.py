@@ -1,11 +1,9 @@
-"""Members of a shard by offset: descriptors are opened once per process, and nothing is ever extracted."""
+"""Members of a shard by offset: pieces are read where they lie, and nothing is ever extracted."""
 
 from __future__ import annotations
 
-import os
 import zlib
-from collections import OrderedDict
-from pathlib import Path
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -15,19 +13,24 @@ from scenegen.foundation.errors import CorruptFrameError
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import Layer, max_member_bytes, member_field
 from scenegen_datasets.pixels import decode_member
-
-_MAX_OPEN = 64
+from scenegen_datasets.remote import Files, Root, files_at
 
 
 class ShardReader:
-    """Decodes members of the frames of one dataset; keeps at most 64 shards open.
+    """Decodes members of the frames of one dataset, in a directory or behind a URL.
 
-    Reads with ``pread``, which moves no shared position, so a forked process may go on with what it inherited.
+    Threads may share one, and forked processes may go on with it.
+
+    Parameters
+    ----------
+    root : Path or str
+        Of the dataset.
+    files : Files, optional
+        Its files, if they were found already.
     """
 
-    def __init__(self, root: Path) -> None:
-        self._root = root
-        self._open: OrderedDict[str, int] = OrderedDict()
+    def __init__(self, root: Root, files: Files | None = None) -> None:
+        self._files = files or files_at(root)
 
     def arrays(
         self, row: np.void, job: ClipJob, member: str, layers: tuple[Layer, ...]
@@ -39,13 +42,29 @@ class ShardReader:
         CorruptFrameError
             If the shard is missing or short, or the member's bytes are not those that were written.
         """
-        data = self.stored(row, job, member)
-        where = f"{job.shard}: {job.key(int(row['frame']))}.{member}"
+        return self.frame(row, job, {member: layers})
+
+    def frame(
+        self, row: np.void, job: ClipJob, members: Mapping[str, tuple[Layer, ...]]
+    ) -> dict[str, NDArray[Any]]:
+        """Decode several members of one frame, read together; errors as `arrays`.
+
+        Parameters
+        ----------
+        row : structured scalar
+            Checked.
+        job : ClipJob
+        members : mapping of str to tuple of Layer
+            Suffix to all the layers the member was written with.
+        """
         shape = (int(row["height_px"]), int(row["width_px"]))
-        try:
-            return decode_member(member, layers, data, shape)
-        except CorruptFrameError as error:
-            raise CorruptFrameError(f"{where}: {error}") from None
+        found: dict[str, NDArray[Any]] = {}
+        for (member, layers), data in zip(members.items(), self._read(row, job, members), strict=True):
+            try:
+                found |= decode_member(member, layers, data, shape)
+            except CorruptFrameError as error:
+                raise CorruptFrameError(f"{_where(row, job, member)}: {error}") from None
+        return found
 
     def stored(self, row: np.void, job: ClipJob, member: str) -> bytes:
         """Bytes of one member of the frame of `job` that `row` (checked) describes, as they stand in the shard.
@@ -55,34 +74,30 @@ class ShardReader:
         CorruptFrameError
             If the shard is missing or short, or the bytes are not those that were written.
         """
-        name = member_field(member)
-        where = f"{job.shard}: {job.key(int(row['frame']))}.{member}"
-        size = int(row[f"{name}_size"])
-        shape = (int(row["height_px"]), int(row["width_px"]))
-        if size > min(int(row["shard_size"]), max_member_bytes(shape)):
-            raise CorruptFrameError(f"{where}: larger than its shard or its image allows")
-        try:
-            data = os.pread(self._descriptor(job.shard), size, int(row[f"{name}_offset"]))
-        except OSError as error:
-            raise CorruptFrameError(f"{where}: {error.strerror or error}") from None
-        if len(data) != size or zlib.crc32(data) != int(row[f"{name}_crc32"]):
-            raise CorruptFrameError(f"{where}: damaged; run `scenegen verify`")
-        return data
+        return self._read(row, job, (member,))[0]
 
     def close(self) -> None:
         """Close all descriptors."""
-        while self._open:
-            os.close(self._open.popitem()[1])
+        self._files.close()
 
-    def __del__(self) -> None:
-        self.close()
+    def _read(self, row: np.void, job: ClipJob, members: Iterable[str]) -> list[bytes]:
+        names = [(member, member_field(member)) for member in members]
+        limit = min(int(row["shard_size"]), max_member_bytes((int(row["height_px"]), int(row["width_px"]))))
+        wanted = [(int(row[f"{name}_offset"]), int(row[f"{name}_size"])) for _, name in names]
+        for (member, _), (_, size) in zip(names, wanted, strict=True):
+            if size > limit:
+                raise CorruptFrameError(
+                    f"{_where(row, job, member)}: larger than its shard or its image allows"
+                )
+        try:
+            pieces = self._files.spans(job.shard, wanted)
+        except OSError as error:
+            raise CorruptFrameError(f"{job.shard}: {error.strerror or error}") from None
+        for (member, name), (_, size), data in zip(names, wanted, pieces, strict=True):
+            if len(data) != size or zlib.crc32(data) != int(row[f"{name}_crc32"]):
+                raise CorruptFrameError(f"{_where(row, job, member)}: damaged; run `scenegen verify`")
+        return pieces
 
-    def _descriptor(self, shard: str) -> int:
-        if shard in self._open:
-            self._open.move_to_end(shard)
-            return self._open[shard]
-        if len(self._open) >= _MAX_OPEN:
-            os.close(self._open.popitem(last=False)[1])
-        descriptor = os.open(self._root / shard, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC)
-        self._open[shard] = descriptor
-        return descriptor
+
+def _where(row: np.void, job: ClipJob, member: str) -> str:
+    return f"{job.shard}: {job.key(int(row['frame']))}.{member}"

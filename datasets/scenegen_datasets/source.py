@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from scenegen.foundation.errors import DatasetError, InputError
-from scenegen_datasets.description import read_description
-from scenegen_datasets.index import ROW, Rows, open_index, rows_of
+from scenegen.foundation.errors import InputError
+from scenegen_datasets.clip_lines import ClipLines
+from scenegen_datasets.description import MAX_BYTES, description_of
+from scenegen_datasets.index import ROW, Rows, first_rows, open_index, rows_of
 from scenegen_datasets.receipt import read_receipt, receipt_paths
-from scenegen_datasets.seal import read_bounded
+from scenegen_datasets.remote import Files, Root, files_at, plain_root
 from scenegen_datasets.store import CLIPS, DATASET, INDEX, LOCK, finished
-
-_MAX_CLIPS_BYTES = 1 << 30
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,16 +30,22 @@ class Source:
         `scenegen_datasets.index.ROW`.
     layers : tuple of str
         Layers that are stored.
-    lines : list of bytes
+    lines : sequence of bytes
         One JSON line per clip, in plan order.
     starts : int64 (clips,)
         First row of each clip.
+    heads : structured array (clips,)
+        The rows at `starts`, in memory: what is common to a clip is found without touching the index.
+    content_id : str
+        Of a finished dataset; empty while it grows.
     """
 
     rows: Rows
     layers: tuple[str, ...]
-    lines: list[bytes]
-    starts: np.ndarray
+    lines: Sequence[bytes]
+    starts: NDArray[np.int64]
+    heads: Rows
+    content_id: str = ""
 
     def facts(self, clip: int) -> Mapping[str, Any]:
         """Facts of the clip at this position."""
@@ -48,8 +53,17 @@ class Source:
         return facts
 
 
-def open_source(root: Path, allow_partial: bool) -> Source:
+def open_source(root: Root, allow_partial: bool, files: Files | None = None) -> Source:
     """Open a dataset for reading.
+
+    Parameters
+    ----------
+    root : Path or str
+        A directory or a URL.
+    allow_partial : bool
+        Take what is there of a dataset in a directory that still grows.
+    files : Files, optional
+        Its files, if they were found already.
 
     Raises
     ------
@@ -58,44 +72,40 @@ def open_source(root: Path, allow_partial: bool) -> Source:
     DatasetError
         If what describes it is damaged.
     """
-    if (root / DATASET).is_file():
-        return _finished(root)
-    if not (root / LOCK).is_file():
-        raise InputError(f"no dataset at {root} (it has neither {DATASET} nor {LOCK})")
+    place = plain_root(root)
+    files = files or files_at(place)
+    if files.holds(DATASET):
+        return _finished(files)
+    if not files.holds(LOCK):
+        raise InputError(f"no dataset at {files.where} (it has neither {DATASET} nor {LOCK})")
+    if not isinstance(place, Path):
+        raise InputError(
+            f"{place} is not whole yet (it has no {DATASET}); wait for `scenegen push` to finish"
+        )
     if not allow_partial:
         raise InputError(
-            f"{root} is not finished; finish it with the same render command, or pass allow_partial=True"
+            f"{place} is not finished; finish it with the same render command, or pass allow_partial=True"
         )
-    return _growing(root)
+    return _growing(place)
 
 
-def _finished(root: Path) -> Source:
-    description = read_description(root / DATASET)
-    counts = description["counts"]
-    rows = open_index(root / INDEX, counts["frames"])
-    clips = read_bounded(root / CLIPS, _MAX_CLIPS_BYTES)
-    if hashlib.sha256(clips).hexdigest() != description["sums"][CLIPS]:
-        raise DatasetError(f"{root / CLIPS}: damaged; run `scenegen verify`")
+def _finished(files: Files) -> Source:
+    description = description_of(files.read(DATASET, MAX_BYTES), f"{files.where}/{DATASET}")
+    sums, frames = description["sums"], description["counts"]["frames"]
+    index = files.kept(INDEX, sums[INDEX])
+    rows = open_index(index, frames)
+    lines = ClipLines.of(files.kept(CLIPS, sums[CLIPS]), sums[CLIPS])
+    starts, heads = first_rows(index, frames, len(lines))
     layers = tuple(layer["name"] for layer in description["layers"])
-    return _source(rows, layers, clips.splitlines(), str(root / INDEX))
+    return Source(rows, layers, lines, starts, heads, description["content_id"])
 
 
 def _growing(root: Path) -> Source:
     done = finished(root)
     receipts = [read_receipt(root, path) for path in receipt_paths(root)]
     receipts = sorted((r for r in receipts if r.clip.job.name in done), key=lambda r: r.clip.job)
-    rows = np.concatenate([rows_of(r) for r in receipts]) if receipts else np.zeros(0, ROW)
+    parts = [rows_of(r) for r in receipts]
+    rows = np.concatenate(parts) if parts else np.zeros(0, ROW)
+    starts = np.cumsum([0, *map(len, parts)], dtype=np.int64)[:-1]
     lines = [json.dumps(r.clip.to_dict()).encode() for r in receipts]
-    return _source(rows, receipts[0].layers if receipts else (), lines, "receipts")
-
-
-def _source(rows: Rows, layers: tuple[str, ...], lines: list[bytes], where: str) -> Source:
-    """Find the clips by jumping from first row to first row: touches one page a clip, not the whole index."""
-    starts = np.zeros(len(lines), np.int64)
-    at = 0
-    for k in range(len(lines)):
-        starts[k] = at
-        at += max(int(rows["frames"][at]), 1) if at < len(rows) else 1
-    if at != len(rows):
-        raise DatasetError(f"{where}: holds other frames than {CLIPS} says; run `scenegen verify`")
-    return Source(rows, layers, lines, starts)
+    return Source(rows, receipts[0].layers if receipts else (), lines, starts, rows[starts])
