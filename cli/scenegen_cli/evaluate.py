@@ -65,7 +65,7 @@ def run(arguments: Sequence[str]) -> int:
     if command.json:
         say_json(as_json(found))
         return 0
-    rows = [("network", found.report), *found.baselines.items()]
+    rows = [("network", found.report), *((name, trivial.report) for name, trivial in found.baselines.items())]
     lines = [("", "RMSE [m]", "Rel", "delta1", "delta2", "delta3")]
     for name, report in rows:
         s = report.pooled

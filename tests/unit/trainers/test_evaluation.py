@@ -59,7 +59,7 @@ def test_scores_strata_and_baselines_of_a_known_answer(toy: Path, tmp_path: Path
     low, high = found.interval["rel"]
     assert low <= found.report.pooled.rel <= high
     assert set(found.baselines) == {"constant", "row mean"}
-    assert found.baselines["row mean"].pooled.rmse_m < found.baselines["constant"].pooled.rmse_m
+    assert found.baselines["row mean"].report.pooled.rmse_m < found.baselines["constant"].report.pooled.rmse_m
     paths = write_report(found, answer, data, tmp_path / "report")
     page = json.loads(paths[0].read_text())
     assert page["scores"]["pooled"]["rmse_m"] == found.report.pooled.rmse_m

@@ -13,7 +13,8 @@ from scenegen_cli.main import main
 from scenegen_trainers.models.checkpoint import read_checkpoint
 from scenegen_trainers.tables.order import half_width, judge
 from scenegen_trainers.tables.paper import RELATIONS, ROWS, Relation
-from scenegen_trainers.tables.table1 import run_name
+from scenegen_trainers.tables.table1 import Table1, run_name
+from scenegen_trainers.tables.table1_page import as_html, as_markdown
 from scenegen_trainers.tables.worker import worker
 
 TINY = [
@@ -54,6 +55,29 @@ def test_the_paper_supports_its_own_relations() -> None:
         for score in ROWS[0].figures:
             runs = {row.key: (row.figures[score],) for row in ROWS}
             assert judge(relation, score, runs).margin >= 0.0
+
+
+def test_rows_are_held_against_an_answer_without_an_image() -> None:
+    """Networks of 10 m on average, a row mean of 12 m, and one row that no image helps."""
+    kinds = ("pooled", "painted", "pooled_aligned")
+
+    def scores(rmse_m: float) -> dict[str, dict[str, float]]:
+        own = {"rmse_m": rmse_m, "rel": rmse_m / 30.0, "delta1": 0.5, "delta2": 0.7, "delta3": 0.8}
+        return dict.fromkeys(kinds, own)
+
+    runs = {row.key: [scores(rmse) for rmse in (9.9, 10.0, 10.1)] for row in ROWS}
+    runs["proposed-0"] = [scores(rmse) for rmse in (14.9, 15.0, 15.1)]
+    baselines = {"row mean": scores(12.0), "constant": scores(20.0)}
+    dataset = {"name": "toy", "version": "1.0.0"}
+    table = Table1(dataset, "test", "ci", (0, 1, 2), runs, baselines, 600)
+    found = {f.claim: f for f in table.against_trivial() if f.score == "rmse_m"}
+    assert found["proposed, w_L1 = 300"].verdict == "held"
+    assert found["proposed, w_L1 = 300"].margin == pytest.approx(2.0)
+    assert found["proposed, w_L1 = 0"].verdict == "not held"
+    page = as_markdown(table)
+    assert page.count("| row mean, no image |  | 12.00 | 0.400 |") == len(kinds)
+    assert "| proposed, w_L1 = 0 | not held (-3.000) |" in page
+    assert '<td class="not">not held (-3.000)</td>' in as_html(table)
 
 
 @pytest.mark.slow

@@ -16,10 +16,24 @@ from scenegen_trainers.evaluation.answers import answers
 from scenegen_trainers.evaluation.baselines import fit_baselines
 from scenegen_trainers.evaluation.bootstrap import Judged, intervals
 from scenegen_trainers.evaluation.strata import by_class, strata_of
-from scenegen_trainers.metrics import DepthMeter, DepthReport, ValidDepth
+from scenegen_trainers.metrics import DepthMeter, DepthReport, DepthScores, ValidDepth
 from scenegen_trainers.models.checkpoint import Checkpoint
 from scenegen_trainers.training.samples import Samples, spread
 from scenegen_trainers.training.source import TrainingData
+
+
+@dataclass(frozen=True)
+class Trivial:
+    """Scores of an answer that looks at no image.
+
+    Attributes
+    ----------
+    report, painted : DepthReport
+        As in `Evaluation`.
+    """
+
+    report: DepthReport
+    painted: DepthReport
 
 
 @dataclass(frozen=True)
@@ -40,8 +54,8 @@ class Evaluation:
         Bootstrap over clips, 95 %, of ``report.pooled``.
     strata : mapping of str to DepthReport
         By map, day and night, class.
-    baselines : mapping of str to DepthReport
-        Trivial answers on the same pixels.
+    baselines : mapping of str to Trivial
+        Answers that look at no image, on the same pixels.
     images : tuple of (str, Judged)
         Key and scores of each image that has valid pixels.
     cap_m : float
@@ -55,7 +69,7 @@ class Evaluation:
     painted: DepthReport
     interval: Mapping[str, tuple[float, float]]
     strata: Mapping[str, DepthReport]
-    baselines: Mapping[str, DepthReport]
+    baselines: Mapping[str, Trivial]
     images: tuple[tuple[str, Judged], ...]
     cap_m: float
 
@@ -73,6 +87,13 @@ class _Meters:
         near, far = self.valid.nearest_m, self.valid.furthest_m
         self.whole = DepthMeter(self.valid)
         self.painted = DepthMeter(ValidDepth(near, far, beyond_as_furthest=True))
+
+    def add(
+        self, estimate_m: Float32[np.ndarray, "rows columns"], truth_m: Float32[np.ndarray, "rows columns"]
+    ) -> DepthScores | None:
+        """Judge an image both ways; returns its scores with sky left out."""
+        self.painted.add(estimate_m, truth_m)
+        return self.whole.add(estimate_m, truth_m)
 
     def stratum(self, name: str) -> DepthMeter:
         return self.strata.setdefault(name, DepthMeter(self.valid))
@@ -118,8 +139,7 @@ def evaluate(
     for answer in answers(network.metres, samples, device):
         index = int(samples.index[answer.position])
         sample = facts[index]
-        scores = meters.whole.add(answer.estimate_m, answer.truth_m)
-        meters.painted.add(answer.estimate_m, answer.truth_m)
+        scores = meters.add(answer.estimate_m, answer.truth_m)
         if scores is not None:
             pixels = int(((answer.truth_m >= valid.nearest_m) & (answer.truth_m < valid.furthest_m)).sum())
             clip = f"{sample['map']}-{sample['world']}/{sample['clip']}"
@@ -142,19 +162,19 @@ def evaluate(
     )
 
 
-def judge_baselines(data: TrainingData, split: str, pairs: int, valid: ValidDepth) -> dict[str, DepthReport]:
+def judge_baselines(data: TrainingData, split: str, pairs: int, valid: ValidDepth) -> dict[str, Trivial]:
     """Trivial answers, learned from the training split, on the same pixels."""
     training = PairDataset(data.root, "train", ("depth",))
     if len(training) == 0:
         return {}
     baselines = fit_baselines(training, valid.furthest_m)
     judged = PairDataset(data.root, split, ("depth",))
-    meters: dict[str, DepthMeter] = {}
+    meters: dict[str, _Meters] = {}
     for index in spread(len(judged), pairs).tolist():
         truth = judged[index]["depth"]
         for name, answer in baselines.answers(truth.shape).items():
-            meters.setdefault(name, DepthMeter(valid)).add(answer, truth)
-    return {name: meter.report() for name, meter in meters.items()}
+            meters.setdefault(name, _Meters(valid)).add(answer, truth)
+    return {name: Trivial(m.whole.report(), m.painted.report()) for name, m in meters.items()}
 
 
 def check_frames(checkpoint: Checkpoint, data: TrainingData) -> None:

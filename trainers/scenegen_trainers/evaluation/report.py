@@ -51,7 +51,10 @@ def as_json(evaluation: Evaluation) -> dict[str, Any]:
         "painted": report_json(evaluation.painted),
         "interval_95": {name: list(span) for name, span in evaluation.interval.items()},
         "strata": {name: report_json(report) for name, report in evaluation.strata.items()},
-        "baselines": {name: report_json(report) for name, report in evaluation.baselines.items()},
+        "baselines": {
+            name: {**report_json(trivial.report), "painted": report_json(trivial.painted)}
+            for name, trivial in evaluation.baselines.items()
+        },
     }
 
 
@@ -98,7 +101,7 @@ def as_markdown(evaluation: Evaluation) -> str:
     ]
     if evaluation.baselines:
         lines += ["", "## Trivial answers", ""]
-        lines += _rows((n, r.pooled, r.pixels) for n, r in evaluation.baselines.items())
+        lines += _rows((n, t.report.pooled, t.report.pixels) for n, t in evaluation.baselines.items())
     if evaluation.strata:
         lines += ["", "## By map, hour and class", ""]
         lines += _rows((n, r.pooled, r.pixels) for n, r in evaluation.strata.items())

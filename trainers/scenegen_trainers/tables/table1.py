@@ -17,11 +17,13 @@ from scenegen_datasets.resolve import Source
 from scenegen_trainers.evaluation.bootstrap import NAMES
 from scenegen_trainers.tables.names import SCORES
 from scenegen_trainers.tables.order import Found, judge
-from scenegen_trainers.tables.paper import RELATIONS, ROWS, Row
+from scenegen_trainers.tables.paper import RELATIONS, ROWS, Relation, Row
 from scenegen_trainers.training.recipe import TrainingRecipe, resolve_training
 
 WORKER = "scenegen_trainers.tables.worker:worker"
 RUNS = "runs"
+TRIVIAL = "row mean"
+"""The answer without an image that a network has to beat: it knows where the ground is, on average."""
 
 _ENVIRONMENT = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 """Of a worker: one thread each. More would fight over the same cores."""
@@ -76,7 +78,7 @@ class Table1:
     runs : mapping of (str to list of mapping)
         Scores of every seed, by key of the row: ``{"pooled": {...}, "painted": {...}, ...}``.
     baselines : mapping of str to mapping
-        Trivial answers on the same pixels.
+        Trivial answers on the same pixels, scored as `runs` are.
     steps : int
         Of each training.
     """
@@ -86,7 +88,7 @@ class Table1:
     profile: str
     seeds: tuple[int, ...]
     runs: Mapping[str, Sequence[Mapping[str, Any]]]
-    baselines: Mapping[str, Mapping[str, float]]
+    baselines: Mapping[str, Mapping[str, Any]]
     steps: int
 
     def values(self, row: str, score: str, kind: str = "pooled") -> list[float]:
@@ -105,6 +107,20 @@ class Table1:
             for relation in RELATIONS
             for score in NAMES
         ]
+
+    def against_trivial(self, kind: str = "pooled") -> list[Found]:
+        """Whether each row beats the best trivial answer there is, score by score."""
+        if TRIVIAL not in self.baselines:
+            return []
+        found = []
+        for row in ROWS:
+            relation = Relation(f"{row.method}, w_L1 = {row.w_l1:g}", (row.key,), (TRIVIAL,))
+            for score in NAMES:
+                level = [float(self.baselines[TRIVIAL][kind][score])] * len(self.seeds)
+                found.append(
+                    judge(relation, score, {row.key: self.values(row.key, score, kind), TRIVIAL: level})
+                )
+        return found
 
 
 def run_table1(job: Table1Job, watch: Callable[[str, str], None] = lambda run, said: None) -> Table1:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from html import escape
 from math import isfinite
@@ -29,8 +29,8 @@ NOTE = (
 )
 
 VERDICTS = (
-    "held: better by more than seeds explain (paired t, 95 %) in the pair of rows it is worst off with; not held: "
-    "worse by more than that; open: neither."
+    "held: better by more than seeds explain (paired t, 95 %), in the pair of rows it is worst off with where a claim "
+    "names several; not held: worse by more than that; open: neither. In brackets: by how much it is better."
 )
 
 
@@ -69,6 +69,9 @@ def as_json(table: Table1) -> dict[str, Any]:
         ],
         "baselines": {name: dict(scores) for name, scores in table.baselines.items()},
         "relations": [_finite(asdict(found)) for found in table.relations()],
+        "against_trivial": {
+            kind: [_finite(asdict(found)) for found in table.against_trivial(kind)] for _, kind in _SECTIONS
+        },
     }
 
 
@@ -94,19 +97,15 @@ def _score_rows(table: Table1, kind: str) -> list[Cells]:
         ours = [_cell(table, row, name, digits, kind) for name, digits in zip(NAMES, _DIGITS, strict=True)]
         paper = [f"{value:.3f}" for value in row.published]
         rows.append([row.method, f"{row.w_l1:g}", *ours, *paper])
+    for name, scores in table.baselines.items():
+        cells = [f"{scores[kind][n]:.{d}f}" for n, d in zip(NAMES, _DIGITS, strict=True)]
+        rows.append([f"{name}, no image", "", *cells, *[""] * len(NAMES)])
     return rows
 
 
 def _cell(table: Table1, row: Row, name: str, digits: int, kind: str) -> str:
     mean, spread = table.mean_and_spread(row.key, name, kind)
     return f"{mean:.{digits}f}" + ("" if spread is None else f" ± {spread:.{digits}f}")
-
-
-def _baseline_rows(baselines: Mapping[str, Mapping[str, float]]) -> list[Cells]:
-    return [
-        [name, *(f"{scores[n]:.{d}f}" for n, d in zip(NAMES, _DIGITS, strict=True))]
-        for name, scores in baselines.items()
-    ]
 
 
 def _relation_rows(found: Sequence[Found]) -> list[Cells]:
@@ -127,16 +126,26 @@ _SECTIONS = (
 )
 
 
+def _judgements(table: Table1) -> list[tuple[str, list[Found]]]:
+    """What is asked of the runs, and what they say."""
+    sections = [("The paper's relations", table.relations())]
+    if table.baselines:
+        sections += [
+            ("Better than the mean depth of each image row", table.against_trivial()),
+            ("The same, each estimate scaled to its truth's median", table.against_trivial("pooled_aligned")),
+        ]
+    return sections
+
+
 def as_markdown(table: Table1) -> str:
     """A page."""
     parts = [f"# {_title(table)}", _about(table), NOTE]
     for heading, kind in _SECTIONS:
         parts += [f"## {heading}"] if heading else []
         parts.append(_markdown(_SCORE_HEAD, _score_rows(table, kind)))
-    if table.baselines:
-        parts += ["## Trivial answers", _markdown(("answer", *_HEADS), _baseline_rows(table.baselines))]
-    parts += ["## The paper's relations", VERDICTS]
-    parts.append(_markdown(("claim", *_HEADS), _relation_rows(table.relations())))
+    for heading, found in _judgements(table):
+        parts += [f"## {heading}", _markdown(("claim", *_HEADS), _relation_rows(found))]
+    parts.append(VERDICTS)
     return "\n\n".join(parts) + "\n"
 
 
@@ -158,10 +167,9 @@ def as_html(table: Table1) -> str:
     for heading, kind in _SECTIONS:
         parts += [f"<h2>{escape(heading)}</h2>"] if heading else []
         parts.append(_html(_SCORE_HEAD, _score_rows(table, kind)))
-    if table.baselines:
-        parts += ["<h2>Trivial answers</h2>", _html(("answer", *_HEADS), _baseline_rows(table.baselines))]
-    parts += ["<h2>The paper's relations</h2>", f"<p>{escape(VERDICTS)}</p>"]
-    parts.append(_html(("claim", *_HEADS), _relation_rows(table.relations())))
+    for heading, found in _judgements(table):
+        parts += [f"<h2>{escape(heading)}</h2>", _html(("claim", *_HEADS), _relation_rows(found))]
+    parts.append(f"<p>{escape(VERDICTS)}</p>")
     head = f'<meta charset="utf-8"><title>{escape(_title(table))}</title><style>{_STYLE}</style>'
     return f'<!doctype html><html lang="en"><head>{head}</head><body>{"".join(parts)}</body></html>\n'
 

@@ -47,6 +47,8 @@ class Machine:
         torch.set_num_threads(self.threads)
         # What has no deterministic form on a GPU is said in a warning there, and is an error on the CPU.
         torch.use_deterministic_algorithms(True, warn_only=self.accelerator != "cpu")
+        # That mode also fills all fresh memory with NaN, to catch those who read it unwritten: a twentieth of the time.
+        torch.utils.deterministic.fill_uninitialized_memory = False
 
     def device(self) -> str:
         """Where a single process computes.
