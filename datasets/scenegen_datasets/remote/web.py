@@ -73,8 +73,12 @@ class WebFiles:
         return self._url
 
     def holds(self, path: str) -> bool:
-        """Whether there is such a file."""
-        return bool(self._ask(path, lambda fs, place: fs.exists(place)))
+        """Whether there is such a file; asks for a byte, because some file systems take no answer for a no."""
+        try:
+            self._ask(path, lambda fs, place: fs.cat_file(place, start=0, end=1))
+        except FileNotFoundError:
+            return False
+        return True
 
     def read(self, path: str, max_bytes: int) -> bytes:
         """Return a whole file."""
