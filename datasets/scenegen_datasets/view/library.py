@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scenegen.foundation.errors import InputError
 from scenegen_datasets.index import checked, job_of
 from scenegen_datasets.job import SPLITS
-from scenegen_datasets.layers import IMU_MEMBER, LAYERS, layers_by_member
+from scenegen_datasets.layers import IMU_MEMBER, layers_by_member
 from scenegen_datasets.pictures.words import clip_words
 from scenegen_datasets.reader import ShardReader
 from scenegen_datasets.scale import scale_of
@@ -99,8 +99,8 @@ class Library:
         self._source = open_source(root, allow_partial=True)
         self._reader = ShardReader(root)
         self._members = {
-            member: tuple(LAYERS[x] for x in names)
-            for member, names in layers_by_member(self._source.layers).items()
+            member: tuple(group)
+            for member, group in layers_by_member(self._source.layers).items()
             if member != IMU_MEMBER
         }
         self._kept: OrderedDict[tuple[int, int], Still] = OrderedDict()

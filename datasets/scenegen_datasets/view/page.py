@@ -8,12 +8,12 @@ from __future__ import annotations
 from typing import Any
 
 from nicegui import ui
-from PIL import Image
 
 from scenegen.materials.table import materials
 from scenegen_datasets.job import SPLITS
-from scenegen_datasets.view.library import Clip, Library, Still
-from scenegen_datasets.view.panels import GAINS, PALETTES, Ranges, drawable, panel
+from scenegen_datasets.view.gallery import Gallery, Tone
+from scenegen_datasets.view.library import Clip, Still
+from scenegen_datasets.view.panels import GAINS, PALETTES
 from scenegen_datasets.view.readout import readout
 from scenegen_datasets.view.space import Space
 
@@ -33,15 +33,15 @@ class Page:
 
     Parameters
     ----------
-    library : Library
+    gallery : Gallery
     """
 
-    def __init__(self, library: Library) -> None:
-        self._library = library
+    def __init__(self, gallery: Gallery) -> None:
+        self._gallery, self._library = gallery, gallery.library
         self._materials = {m.id: m.name for m in materials().values()}
-        self._shown = [name for name in _FIRST_SHOWN if name in drawable(library.layers)]
-        self._gain, self._palette = next(iter(GAINS)), PALETTES[0]
-        self._clip: Clip = library.clips[0]
+        self._shown = [name for name in _FIRST_SHOWN if name in gallery.layers]
+        self._tone = Tone()
+        self._clip: Clip = self._library.clips[0]
         self._pixel: tuple[int, int] | None = None
         self._pictures: list[Any] = []
         self._captions: list[Any] = []
@@ -70,17 +70,26 @@ class Page:
         clips = self._library.clips
         splits = [s for s in SPLITS if any(c.split == s for c in clips)]
         with ui.row().classes("items-center gap-4"):
-            self._split = ui.select(["all", *splits], value="all", label="split", on_change=self._list_clips)
+            self._split = ui.select(
+                ["all", *splits], value="all", label="split", on_change=self._list_clips
+            ).classes("w-28")
             maps = sorted({c.map for c in clips})
-            self._map = ui.select(["all", *maps], value="all", label="map", on_change=self._list_clips)
+            self._map = ui.select(
+                ["all", *maps], value="all", label="map", on_change=self._list_clips
+            ).classes("w-40")
             self._listed = ui.select(
-                {}, label="clip", with_input=True, on_change=lambda e: self._choose_clip(clips[e.value])
+                self._listing(),
+                value=self._clip.position,
+                label="clip",
+                with_input=True,
+                on_change=lambda e: self._choose_clip(clips[e.value]),
             ).classes("w-72")
-            ui.select(dict(GAINS), value=self._gain, label="thermal gain", on_change=self._set_gain).classes(
-                "w-80"
-            )
-            ui.select(list(PALETTES), value=self._palette, label="palette", on_change=self._set_palette)
-        self._list_clips()
+            ui.select(
+                dict(GAINS), value=self._tone.gain, label="thermal gain", on_change=self._set_gain
+            ).classes("w-80")
+            ui.select(
+                list(PALETTES), value=self._tone.palette, label="palette", on_change=self._set_palette
+            ).classes("w-32")
 
     def _build_scrubber(self) -> None:
         with ui.row().classes("w-full items-center no-wrap gap-3"):
@@ -91,7 +100,7 @@ class Page:
     def _build_panel(self, slot: int) -> None:
         with ui.column().classes("gap-1 w-full"):
             ui.select(
-                list(drawable(self._library.layers)),
+                list(self._gallery.layers),
                 value=self._shown[slot],
                 on_change=lambda e: self._set_layer(slot, e.value),
             ).props("dense borderless")
@@ -99,15 +108,17 @@ class Page:
             self._pictures.append(picture.mark(f"picture-{slot}"))
             self._captions.append(ui.label().classes("text-xs opacity-70"))
 
-    def _list_clips(self) -> None:
-        """Offer the clips of the chosen split and map; stay where we are if that is one of them."""
-        if not hasattr(self, "_listed"):
-            return
-        listed = {
+    def _listing(self) -> dict[int, str]:
+        """Clips of the chosen split and map, by their position."""
+        return {
             c.position: f"{c.split}  {c.map}  {c.label}"
             for c in self._library.clips
             if self._split.value in ("all", c.split) and self._map.value in ("all", c.map)
         }
+
+    def _list_clips(self) -> None:
+        """Offer the clips of the chosen split and map; stay where we are if that is one of them."""
+        listed = self._listing()
         if not listed:
             ui.notify("no clip of this split on this map")
             return
@@ -116,8 +127,6 @@ class Page:
 
     def _choose_clip(self, clip: Clip) -> None:
         self._clip = clip
-        ends = sorted({0, clip.frames // 2, clip.frames - 1})
-        self._ranges = Ranges.of([self._library.still(clip.position, k) for k in ends])
         self._words.text = self._library.words(clip.position)
         self._frame._props["max"] = clip.frames - 1
         self._frame.update()
@@ -131,19 +140,19 @@ class Page:
         """Draw the frame that is chosen now."""
         still = self._still()
         for slot in range(len(self._pictures)):
-            self._draw(still, slot)
+            self._draw(slot)
         pair = "" if int(self._frame.value) else "  (before the first pair)"
         self._where.text = f"{int(self._frame.value)} / {self._clip.frames - 1}   {still.time_s:.3f} s{pair}"
         self._read(still)
-        near = self._ranges.depth_m[1]
-        self._space.show_frame(
-            still, panel(still, "thermal", self._ranges, self._gain, self._palette).picture, near
-        )
+        if self._clock.active:
+            return  # points by the thousand at every step would hold up the film
+        thermal = self._gallery.panel(*self._at, "thermal", self._tone)
+        self._space.show_frame(still, thermal.picture)
 
-    def _draw(self, still: Still, slot: int) -> None:
-        drawn = panel(still, self._shown[slot], self._ranges, self._gain, self._palette)
-        self._pictures[slot].set_source(Image.fromarray(drawn.picture))
-        self._captions[slot].text = drawn.caption
+    def _draw(self, slot: int) -> None:
+        layer = self._shown[slot]
+        self._pictures[slot].set_source(self._gallery.address(*self._at, layer, self._tone))
+        self._captions[slot].text = self._gallery.panel(*self._at, layer, self._tone).caption
 
     def _read(self, still: Still) -> None:
         """Numbers of the pixel under the cursor, and the cross in all pictures."""
@@ -181,18 +190,24 @@ class Page:
     def _toggle(self) -> None:
         self._clock.active = not self._clock.active
         self._play.props(f"icon={'pause' if self._clock.active else 'play_arrow'}")
+        self._show()
 
     def _set_gain(self, event: Any) -> None:
-        self._gain = event.value
+        self._tone = Tone(event.value, self._tone.palette)
         self._show()
 
     def _set_palette(self, event: Any) -> None:
-        self._palette = event.value
+        self._tone = Tone(self._tone.gain, event.value)
         self._show()
 
     def _set_layer(self, slot: int, layer: str) -> None:
         self._shown[slot] = layer
-        self._draw(self._still(), slot)
+        self._draw(slot)
+
+    @property
+    def _at(self) -> tuple[int, int]:
+        """Clip and frame that are shown."""
+        return self._clip.position, int(self._frame.value)
 
     def _still(self) -> Still:
-        return self._library.still(self._clip.position, int(self._frame.value))
+        return self._library.still(*self._at)

@@ -69,9 +69,7 @@ class Panel:
     caption: str
 
 
-def panel(
-    still: Still, layer: str, ranges: Ranges, gain: Gain = "plateau", palette: Palette = "white hot"
-) -> Panel:
+def panel(still: Still, layer: str, ranges: Ranges, gain: Gain, palette: Palette) -> Panel:
     """Draw one layer of a frame.
 
     Parameters

@@ -35,33 +35,19 @@ def serve(root: Path, *, port: int = 0, show: bool = True, ready: Callable[[str]
     Binds to the loopback address alone, and answers only to its names: another site open in the same browser cannot
     reach it under a name of its own (DNS rebinding).
     """
+    from scenegen_datasets.view.gallery import Gallery
     from scenegen_datasets.view.library import Library
 
-    library = Library(root)
+    gallery = Gallery(Library(root))
     try:
-        from nicegui import app, ui
-    except ImportError:
+        from scenegen_datasets.view import site
+    except ImportError as error:
+        if (error.name or "").startswith("scenegen"):
+            raise
         raise InputError("the viewer needs NiceGUI: pip install 'thermal-scenegen[view]'") from None
-    from starlette.middleware.trustedhost import TrustedHostMiddleware
-
-    from scenegen_datasets.view.page import Page
-
     port = _free_port(port)
-    app.add_middleware(TrustedHostMiddleware, allowed_hosts=[LOOPBACK, "localhost"])
     ready(f"http://{LOOPBACK}:{port}/")
-
-    def page() -> None:
-        Page(library)
-
-    ui.run(
-        page,
-        host=LOOPBACK,
-        port=port,
-        title=f"{root.name} - thermal-scenegen",
-        show=show,
-        reload=False,
-        show_welcome_message=False,
-    )
+    site.run(gallery, LOOPBACK, port, show=show)
 
 
 def _free_port(port: int) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,8 @@ from scenegen_datasets.view.library import Still
 from scenegen_datasets.view.points import back_projected, frustum
 
 _BACKGROUND, _FLIGHT, _CAMERA = "#14171c", "#4ea1ff", "#ffb000"
-_POINT_M = 0.004  # of the reach: a point a few pixels wide
+_REACH = 3.0  # times the median distance: nearer pixels are drawn
+_POINT = 0.005  # of the reach: a point a few pixels wide
 
 
 class Space:
@@ -25,34 +27,38 @@ class Space:
         self._origin: Float64[np.ndarray, "3"] = np.zeros(3)
         self._flight: list[Any] = []
         self._frame: list[Any] = []
+        self._cloud: Any = None
 
     def show_flight(self, poses: Float64[np.ndarray, "frames 4 4"]) -> None:
         """Draw a flight and look at its middle from behind and above."""
         self._clear(self._flight)
+        if self._cloud is not None:
+            self._clear([self._cloud])
+            self._cloud = None  # the size of its points suits one flight
         places = poses[:, :3, 3]
         self._origin = places.mean(axis=0)
         places = places - self._origin
         with self._scene:
-            for a, b in zip(places[:-1], places[1:], strict=True):
+            for a, b in pairwise(places):
                 self._flight.append(self._scene.line(a.tolist(), b.tolist()).material(_FLIGHT))
         forward = poses[len(poses) // 2, :3, 2]
         length = max(float(np.ptp(places, axis=0).max()), 20.0)
         eye = -1.2 * length * np.array([forward[0], forward[1], 0.0]) + [0.0, 0.0, 0.6 * length]
         self._scene.move_camera(*eye.tolist(), 0.0, 0.0, 0.0, duration=0.0)
 
-    def show_frame(self, still: Still, picture: UInt8[np.ndarray, "rows columns 3"], reach_m: float) -> None:
-        """Draw the pixels nearer than `reach_m` in the colours of `picture`, and where the camera looks."""
+    def show_frame(self, still: Still, picture: UInt8[np.ndarray, "rows columns 3"]) -> None:
+        """Draw the nearer pixels in the colours of `picture`, and where the camera looks."""
         self._clear(self._frame)
+        seen = still.layers["depth"][np.isfinite(still.layers["depth"])]
+        reach_m = _REACH * float(np.median(seen)) if seen.size else 1.0
         points, colours = back_projected(still, picture, reach_m)
-        corners = frustum(still, 0.05 * reach_m) - self._origin
+        corners = frustum(still, 0.1 * reach_m) - self._origin
+        places, shades = np.round(points - self._origin, 3).tolist(), np.round(colours / 255.0, 3).tolist()
         with self._scene:
-            self._frame.append(
-                self._scene.point_cloud(
-                    np.round(points - self._origin, 3).tolist(),
-                    np.round(colours / 255.0, 3).tolist(),
-                    point_size=max(_POINT_M * reach_m, 0.05),
-                )
-            )
+            if self._cloud is None:
+                self._cloud = self._scene.point_cloud(places, shades, point_size=_POINT * reach_m)
+            else:
+                self._cloud.set_points(places, shades)
             for k in range(1, 5):
                 following = corners[1 + k % 4]
                 for end in (corners[0], following):
