@@ -12,6 +12,21 @@ from scenegen.foundation.errors import InputError
 from scenegen_trainers.inputs.knobs import TargetKnobs
 
 
+def check_truth(depth_m: Float32[np.ndarray, "rows columns"]) -> None:
+    """Refuse what is no true depth.
+
+    Raises
+    ------
+    InputError
+        If depth is NaN or not positive anywhere; sky is +inf.
+    """
+    wrong = int((~(depth_m > 0.0)).sum())
+    if wrong:
+        raise InputError(
+            f"true depth is NaN or not positive in {wrong} pixels; run `scenegen verify` on the dataset"
+        )
+
+
 def encode(
     depth_m: Float32[np.ndarray, "rows columns"], knobs: TargetKnobs
 ) -> tuple[Float32[np.ndarray, "rows columns"], Bool[np.ndarray, "rows columns"]]:
@@ -34,8 +49,7 @@ def encode(
     InputError
         If depth is NaN or not positive anywhere.
     """
-    if not (depth_m > 0.0).all():
-        raise InputError("true depth is NaN or not positive in places; run `scenegen verify` on the dataset")
+    check_truth(depth_m)
     capped = np.minimum(depth_m, np.float32(knobs.cap_m))
     if knobs.scale == "log":
         octaves = math.log(knobs.cap_m / knobs.near_m)

@@ -31,6 +31,7 @@ def worker(setup: Mapping[str, Any]) -> Callable[..., dict[str, Any]]:
     def handle(task: Mapping[str, Any], say: Callable[[dict[str, Any]], None]) -> dict[str, Any]:
         recipe = TrainingRecipe.model_validate(task["recipe"])
         out = Path(task["out"])
+        data.samples(split, recipe)  # a split that cannot be judged is refused before anything is taught
 
         def watch(taught: Taught) -> None:
             if taught.step % _SAID_EVERY == 0:

@@ -185,6 +185,8 @@ class _School:
         network.train()
         title = f"{self.recipe.model}, step {step}"
         _write_picture(self.out / "samples" / f"{step:08d}.png", answer_sheet(title, shown, target.cap_m))
+        if meter.pixels == 0:
+            return {}  # nothing but sky; the picture says so
         pooled = meter.report().pooled
         return {"val_rmse_m": pooled.rmse_m, "val_rel": pooled.rel, "val_delta1": pooled.delta[0]}
 

@@ -18,7 +18,7 @@ from scenegen.foundation.rng import stream
 from scenegen_datasets.loader import PREVIOUS, PairDataset
 from scenegen_trainers.inputs.knobs import InputKnobs, TargetKnobs
 from scenegen_trainers.inputs.look import Look, centred, compose, look
-from scenegen_trainers.inputs.target import encode
+from scenegen_trainers.inputs.target import check_truth, encode
 from scenegen_trainers.models.learner import Batch
 from scenegen_trainers.training.recipe import TrainingKnobs
 from scenegen_trainers.training.redraw import Redrawn
@@ -124,6 +124,7 @@ class Samples:
             depth = sample["depth"][1]
             flow = sample["flow_back"][1] if "flow_back" in sample else None
         try:
+            check_truth(depth)
             return look(now, before, self.inputs, flow), depth
         except InputError as error:
             raise InputError(f"{sample['key']}: {error}") from None
