@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import io
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from scenegen.foundation.atomic import make_directories, write_atomic
 from scenegen.foundation.errors import InputError
@@ -14,10 +11,9 @@ from scenegen_datasets.layers import check_layers
 from scenegen_datasets.loader import PairDataset
 from scenegen_datasets.pictures.animation import animate
 from scenegen_datasets.pictures.sheet import contact_sheet
-from scenegen_datasets.pictures.shot import Shot
-from scenegen_datasets.pictures.words import clip_words
+from scenegen_datasets.pictures.shot import shot_of
 from scenegen_datasets.store import read_lock
-from scenegen_render.sensor.scale import CountScale, counts_to_brightness_K
+from scenegen_render.sensor.scale import CountScale
 
 FOLDER = "preview"
 SHEET = f"{FOLDER}/contact_sheet.png"
@@ -62,23 +58,13 @@ def draw_preview(root: Path) -> tuple[bytes, bytes]:
     clips = max(len(pairs) // per_clip, 1)
     rows = min(MAX_ROWS, max(clips, min(2, len(pairs))))
     chosen = [int((k + 0.5) * len(pairs) / rows) for k in range(rows)]
-    shots = [_shot(pairs[i], scale) for i in chosen]
+    shots = [shot_of(pairs[i], scale) for i in chosen]
     first = per_clip * (clips // 2)
     flight = [
-        _shot(pairs[i], scale) for i in range(first, min(first + min(per_clip, MAX_FRAMES), len(pairs)))
+        shot_of(pairs[i], scale) for i in range(first, min(first + min(per_clip, MAX_FRAMES), len(pairs)))
     ]
     height, width = shots[0].depth.shape
     subtitle = f"{len(pairs):,} pairs   {width} x {height} px   maps: {', '.join(recipe['map'])}"
     file = io.BytesIO()
     contact_sheet(shots, read_lock(root)["name"], subtitle).save(file, "PNG", compress_level=9)
     return file.getvalue(), animate(flight)
-
-
-def _shot(sample: dict[str, Any], scale: CountScale) -> Shot:
-    layers = {
-        name: np.asarray(sample[name]) for name in ("depth", "semantic", "instance", "flow") if name in sample
-    }
-    counts = np.asarray(sample["thermal"], np.uint16)
-    return Shot(
-        sample["key"], clip_words(sample["facts"]), counts, counts_to_brightness_K(counts, scale), **layers
-    )

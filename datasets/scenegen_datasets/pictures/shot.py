@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from jaxtyping import Float32, UInt8, UInt16, UInt32
+
+from scenegen_datasets.pictures.words import clip_words
+from scenegen_render.sensor.scale import CountScale, counts_to_brightness_K
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,3 +46,14 @@ class Shot:
         """Names of the layers that are there, in the order they are shown."""
         optional = {"semantic": self.semantic, "instance": self.instance, "flow": self.flow}
         return ("thermal", "depth", *(name for name, layer in optional.items() if layer is not None))
+
+
+def shot_of(sample: Mapping[str, Any], scale: CountScale) -> Shot:
+    """From a sample of `scenegen_datasets.PairDataset` with its layers to what the pictures need."""
+    layers = {
+        name: np.asarray(sample[name]) for name in ("depth", "semantic", "instance", "flow") if name in sample
+    }
+    counts = np.asarray(sample["thermal"], np.uint16)
+    return Shot(
+        sample["key"], clip_words(sample["facts"]), counts, counts_to_brightness_K(counts, scale), **layers
+    )

@@ -1,0 +1,1 @@
+"""The report: a dataset on one page that needs no other file."""

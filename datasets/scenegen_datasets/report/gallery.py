@@ -1,0 +1,120 @@
+"""The pictures of a report: moments with all their layers, flights that move, and what the colours mean."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+
+import numpy as np
+from PIL import Image
+
+from scenegen.classes import CLASSES
+from scenegen_datasets.pages.axes import Frame, log_ticks, tick_words
+from scenegen_datasets.pages.charts import key
+from scenegen_datasets.pages.markup import Html, element, join, picture, text
+from scenegen_datasets.pictures import colour
+from scenegen_datasets.pictures.shot import Shot
+from scenegen_datasets.report.media import FLIGHT_BYTES, common_range, flight_within, tiles
+from scenegen_datasets.report.selection import Selection
+
+SHEET = """
+.moment{margin:22px 0 0}
+.moment .head,.flight .head{font-size:13px;margin:0 0 6px;color:var(--faint)}
+.moment b,.flight b{color:var(--ink);font-weight:600;margin-right:10px}
+.tiles{display:grid;grid-template-columns:repeat(var(--layers),minmax(0,1fr));gap:8px}
+.tiles img{width:100%}
+.tiles .small,.flight .small{display:block;margin-top:4px;font-size:12px}
+.scales{display:flex;flex-wrap:wrap;gap:10px 34px;align-items:center;margin:14px 0 4px}
+.scales>div{min-width:min(330px,100%)}
+.scales .wheel{display:flex;gap:10px;align-items:center;min-width:0}
+.scales .wheel img{width:44px;height:44px;border-radius:50%}
+@media(max-width:760px){.tiles{grid-template-columns:repeat(2,minmax(0,1fr))}}
+"""
+
+_WHEEL_PX = 88
+
+
+def moments(selection: Selection) -> Html:
+    """One row of tiles for each chosen moment, below the legend."""
+    span_m = common_range(selection.moments)
+    return join([_legend(selection.moments, span_m), *(_moment(shot, span_m) for shot in selection.moments)])
+
+
+def flights(selection: Selection) -> Html:
+    """The chosen flights, moving."""
+    share = FLIGHT_BYTES // max(len(selection.flights), 1)
+    cards = []
+    for shots in selection.flights:
+        data = flight_within(shots, share)
+        with Image.open(io.BytesIO(data)) as image:
+            width, height = image.size
+        clip = shots[0].name.rpartition("-")[0]
+        moving = picture(data, "webp", f"flight {clip}: thermal, depth, flow", width, height, loading="lazy")
+        cards.append(element("div", _head(clip, shots[0]), moving, class_="card flight"))
+    return element("div", *cards, class_="cards", style="--least:520px")
+
+
+def _moment(shot: Shot, span_m: tuple[float, float]) -> Html:
+    cells = [
+        element(
+            "div",
+            picture(t.data, "webp", f"{t.layer} of {shot.name}", t.width, t.height, loading="lazy"),
+            element("span", t.words, class_="small"),
+        )
+        for t in tiles(shot, span_m)
+    ]
+    grid = element("div", *cells, class_="tiles", style=f"--layers:{len(cells)}")
+    return element("div", _head(shot.name, shot), grid, class_="moment")
+
+
+def _head(name: str, shot: Shot) -> Html:
+    return element("p", element("b", name), " · ".join(shot.facts.split("   ")), class_="head")
+
+
+def _legend(shots: Sequence[Shot], span_m: tuple[float, float]) -> Html:
+    wheel = element(
+        "div", _wheel(), element("span", "flow: direction and length", class_="small"), class_="wheel"
+    )
+    parts = [
+        element("div", _depth_bar(*span_m)),
+        *([wheel] if any(s.flow is not None for s in shots) else []),
+    ]
+    seen = sorted({int(k) for shot in shots if shot.semantic is not None for k in np.unique(shot.semantic)})
+    classes = [
+        (_css(CLASSES[k].colour if k else colour.SKY_COLOUR), CLASSES[k].name.replace("_", " ")) for k in seen
+    ]
+    return join([element("div", *parts, class_="scales"), key(classes) if classes else ""])
+
+
+def _depth_bar(low_m: float, high_m: float) -> Html:
+    """The colours of distances over a logarithmic axis; near is bright."""
+    frame = Frame(width=360, height=44, left=14, right=22, top=4, bottom=32)
+    scale = frame.across(low_m, high_m, log=True)
+    ramp = colour.colormap()[::-1]
+    stops = "".join(
+        f'<stop offset="{k / 16:.4f}" stop-color="{_css(tuple(map(int, ramp[min(16 * k, 255)])))}"/>'
+        for k in range(17)
+    )
+    width = frame.width - frame.left - frame.right
+    ticks = "".join(
+        f'<text class="x" x="{scale(v):.1f}" y="26">{text(tick_words(v))} m</text>'
+        for v in log_ticks(low_m, high_m)
+    )
+    return Html(
+        f'<svg viewBox="0 0 {frame.width} 32" role="img" aria-label="colours of depth">'
+        f'<defs><linearGradient id="depth">{stops}</linearGradient></defs>'
+        f'<rect x="{frame.left}" y="2" width="{width}" height="9" rx="2" fill="url(#depth)"/>{ticks}</svg>'
+    )
+
+
+def _wheel() -> Html:
+    axis = (np.arange(_WHEEL_PX) + 0.5) / _WHEEL_PX * 2 - 1
+    u, v = np.meshgrid(axis, axis)
+    image = colour.flow(np.stack([u, v], axis=-1).astype(np.float32), 1.0)
+    file = io.BytesIO()
+    Image.fromarray(image).save(file, "WEBP", lossless=True)
+    return picture(file.getvalue(), "webp", "colour wheel of flow", _WHEEL_PX, _WHEEL_PX)
+
+
+def _css(rgb: tuple[int, ...]) -> str:
+    return f"rgb({rgb[0]},{rgb[1]},{rgb[2]})"

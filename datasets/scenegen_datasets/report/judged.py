@@ -1,0 +1,115 @@
+"""Sections of the depth-leak audit and of label consistency."""
+
+from __future__ import annotations
+
+from scenegen_datasets.audits.labels import LabelConsistency
+from scenegen_datasets.audits.leak import DepthLeak
+from scenegen_datasets.pages.charts import Bars, Curve, curves, histogram, key, share_bar
+from scenegen_datasets.pages.markup import Html, folded
+from scenegen_datasets.pages.sheet import SERIES
+from scenegen_datasets.pages.tables import Column, number, table
+from scenegen_datasets.report.words import card, cards, figures, note, said
+
+_REGRESSORS = (
+    ("one_pixel", "counts of the pixel", "any curve"),
+    ("one_pixel_grey", "grey level of the pixel in its frame", "any curve"),
+    ("linear", "counts, grey level, mean and roughness around it", "a plane"),
+    ("row", "row of the pixel", "any curve"),
+    ("row_and_grey", "row and grey level", "any function"),
+)
+
+
+def leak(found: DepthLeak) -> Html:
+    """What simple guesses explain, and depth by grey level."""
+    if found.explained is None or found.lookup is None or found.information is None:
+        return said(found.verdict)
+    scores = [(what, how, getattr(found.explained, name)) for name, what, how in _REGRESSORS]
+    rows = [
+        (
+            what,
+            how,
+            f"{score:.2f}",
+            share_bar(score, SERIES[2] if "row" in what and "grey" not in what else SERIES[0]),
+        )
+        for what, how, score in scores
+    ]
+    guesses = table((Column("guess from"), "by", number("R²"), Column("", "wide")), rows)
+    curve, told = found.lookup, found.information
+    line = Curve("depth by grey level", curve.grey, curve.mean_m, SERIES[0], curve.low_m, curve.high_m)
+    span = (min(curve.low_m) * 0.8, max(curve.high_m) * 1.25)
+    chart = curves(
+        [line], "grey level in its frame, 0 black, 1 white", (0.0, 1.0), span, log_y=True, unit=" m"
+    )
+    information = table(
+        (Column("knowing"), number("tells of depth")),
+        [
+            ("grey level", f"{told.grey:.2f} bit"),
+            ("row", f"{told.row:.2f} bit"),
+            ("grey level, the row being known", f"{told.grey_given_row:.2f} bit"),
+        ],
+    )
+    kept = f"{found.groups} {found.held_out}, each judged by fits that never saw it"
+    how = note(
+        f"{found.samples:,} pixels of {kept}. R² is the share of the scatter of log depth that is explained: 1 is a "
+        "look-up table, 0 no better than one depth for all, below 0 worse. The line is the mean over all worlds, the "
+        "band holds 68 % of the depths: a steep line with a thin band would be a leak. Of information, 5 bit would be "
+        "everything; it is measured within the same worlds, so it counts as well what holds in one world only."
+    )
+    return Html(
+        said(found.verdict)
+        + cards(
+            card("What simple guesses explain", guesses), card("Depth by grey level", chart), least_px=460
+        )
+        + cards(card("Mutual information", information), least_px=460)
+        + how
+    )
+
+
+def labels(found: LabelConsistency) -> Html:
+    """Residuals of the four tests."""
+    if found.flow_histogram is None or found.warped_histogram is None or found.still_histogram is None:
+        return said(found.verdict)
+    rows = [
+        ("flow by depth and poses, what stands still", *figures(found.flow_px, unit=" px")),
+        ("flow by poses, sky", *figures(found.sky_px, unit=" px")),
+        ("depth by depth and poses, relative", *figures(found.depth_share)),
+        ("flow forth and back", *figures(found.cycle_px, unit=" px")),
+        ("brightness read where the flow points", *figures(found.warped_mK, unit=" mK")),
+        ("the same, free of noise", *figures(found.clean_mK, unit=" mK")),
+        ("brightness at the same pixel", *figures(found.still_mK, unit=" mK")),
+    ]
+    columns = (Column("difference"), number("median"), number("95 %"), number("99 %"), number("pixels"))
+    flow = histogram(
+        [Bars("flow", found.flow_histogram.edges, found.flow_histogram.counts)],
+        "stored flow against depth and poses [px]",
+        log=True,
+    )
+    heat = histogram(
+        [
+            Bars("unmoved", found.still_histogram.edges, found.still_histogram.counts, SERIES[1]),
+            Bars(
+                "where the flow points",
+                found.warped_histogram.edges,
+                found.warped_histogram.counts,
+                SERIES[0],
+            ),
+        ],
+        "difference to the next frame [mK]",
+        log=True,
+        mark=(max(found.noise_mK, 5.0), "two frames of noise"),
+    )
+    words = key([(SERIES[0], "read where the flow points"), (SERIES[1], "read at the same pixel")])
+    how = folded(
+        "what was compared",
+        note(
+            "Surfaces that may move of themselves (vehicles, boats, people, plants) are left out where poses predict. "
+            "Depth, forth and back, and brightness are read between pixels and therefore only where the neighbours "
+            "show one surface. Brightness keeps the camera's noise, its lag and what is seen mirrored."
+        ),
+    )
+    return Html(
+        said(found.verdict)
+        + table(columns, [row for row in rows if row[4] != "0"])
+        + cards(card("Geometry", flow), card("Brightness", words, heat), least_px=420)
+        + how
+    )

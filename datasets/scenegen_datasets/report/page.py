@@ -1,0 +1,118 @@
+"""The report of a dataset: pictures, flights, audits, provenance and cost on one page."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from scenegen.foundation.atomic import make_directories, write_atomic
+from scenegen_datasets.audits.run import QUESTIONS, Audits, Watch, audit
+from scenegen_datasets.info import DatasetInfo, info
+from scenegen_datasets.pages.document import document
+from scenegen_datasets.pages.markup import Html, element
+from scenegen_datasets.report import drawn, gallery, judged, origin, seen, words
+from scenegen_datasets.report.selection import select
+from scenegen_datasets.source import open_source
+from scenegen_datasets.store import read_lock
+
+REPORT = "preview/report.html"
+"""Where it goes unless one says otherwise; nothing below ``preview`` belongs to the data."""
+
+
+@dataclass(frozen=True)
+class Report:
+    """A report that was written.
+
+    Attributes
+    ----------
+    path : Path
+    bytes : int
+    audits : Audits
+    """
+
+    path: Path
+    bytes: int
+    audits: Audits
+
+
+def write_report(root: Path, out: Path | None = None, watch: Watch | None = None) -> Report:
+    """Write the report of a dataset, finished or growing; the same bytes for the same dataset.
+
+    Parameters
+    ----------
+    root : Path
+    out : Path, optional
+        The file; by default ``preview/report.html`` in the dataset.
+    watch : callable, optional
+        Told how many of the audited steps are done and how many there are.
+
+    Raises
+    ------
+    InputError
+        If there is no dataset, nothing in it yet, or the file cannot be written.
+    """
+    page, audits = compose(root, watch)
+    path = out or root / REPORT
+    make_directories(root, "preview") if out is None else make_directories(
+        path.parent.parent, path.parent.name
+    )
+    data = page.encode()
+    write_atomic(path, data)
+    return Report(path, len(data), audits)
+
+
+def compose(root: Path, watch: Watch | None = None) -> tuple[str, Audits]:
+    """The page as HTML, and the audits it is made from."""
+    source = open_source(root, allow_partial=True)
+    audits = audit(root, source, watch)
+    chosen, found, lock = select(root, source), info(root), read_lock(root)
+    bodies = {
+        "draws": drawn.drawn(audits.draws),
+        "contents": drawn.contents(audits.contents, lock["recipe"]),
+        "leak": judged.leak(audits.leak),
+        "labels": judged.labels(audits.labels),
+        "edges": seen.edges(audits.edges),
+        "flow": seen.flow(audits.flow),
+    }
+    sections = [words.section(name, question, bodies[name]) for name, question in QUESTIONS.items()]
+    page = document(
+        f"{found.name} {found.version}".strip(),
+        _head(found, lock["recipe"], audits),
+        words.section("moments", "Moments", gallery.moments(chosen)),
+        words.section("flights", "Flights", gallery.flights(chosen)),
+        *sections,
+        words.section("provenance", "Where it comes from", origin.provenance(found, lock)),
+        words.section("cost", "What it cost", origin.cost(origin.read_log(root))),
+        sheet=words.SHEET + gallery.SHEET,
+    )
+    return page, audits
+
+
+def _head(found: DatasetInfo, recipe: dict[str, object], audits: Audits) -> Html:
+    camera = recipe["camera"]
+    assert isinstance(camera, dict)
+    maps = recipe["map"]
+    assert isinstance(maps, list | tuple)
+    splits = ", ".join(f"{count:,} {name}" for name, count in found.splits.items() if count)
+    lead = (
+        f"{found.pairs:,} pairs of thermal and depth ({splits}) in {found.clips:,} flights through {found.worlds:,} "
+        f"worlds: {', '.join(map(str, maps))}. {camera['width_px']} × {camera['height_px']} px, "
+        f"{camera['hfov_deg']:g}°, {found.bytes / 1e9:.2f} GB."
+    )
+    state = "" if found.complete else " It is not complete."
+    judged_by = f"Audits look at {audits.steps:,} steps of {audits.clips:,} flights, always the same ones."
+    links = [
+        element(
+            "a",
+            words.sign(verdict),
+            element("span", element("small", QUESTIONS[name]), verdict.headline),
+            href=f"#{name}",
+        )
+        for name, verdict in audits.verdicts.items()
+    ]
+    return Html(
+        element("h1", f"{found.name} {found.version}".strip())
+        + element("p", lead + state, class_="lead")
+        + element("div", *links, class_="strip")
+        + element("p", judged_by, class_="small")
+    )
