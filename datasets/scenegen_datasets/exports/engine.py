@@ -110,10 +110,15 @@ class _Plan:
     options: Mapping[str, Any]
 
     @property
+    def frames(self) -> int:
+        """Frames that the format writes."""
+        return sum(job.pairs if self.format.pairs_only else job.frames for job in self.jobs)
+
+    @property
     def pixels(self) -> int:
-        """Of all frames."""
+        """Of these frames."""
         grid = self.description["grid"]
-        return sum(job.frames for job in self.jobs) * int(grid["height_px"]) * int(grid["width_px"])
+        return self.frames * int(grid["height_px"]) * int(grid["width_px"])
 
 
 def export(request: Request, processes: int = 1, told: Told | None = None) -> Outcome:
@@ -291,7 +296,7 @@ def _finish(request: Request, plan: _Plan, markers: Mapping[str, Marker | None],
         root=root,
         to=plan.format.name,
         clips=len(clips),
-        frames=sum(job.frames for job in plan.jobs),
+        frames=plan.frames,
         bytes=total,
         made=made,
         pixels=plan.pixels,

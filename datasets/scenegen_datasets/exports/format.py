@@ -78,6 +78,8 @@ class Format:
         Layers it cannot do without.
     takes : tuple of str
         Layers it writes if the dataset holds them.
+    pairs_only : bool
+        Whether it leaves out frame 0 of each clip, which is no pair.
     bytes_per_pixel : float
         Size of a frame on disk, on the high side; measured on city flights.
     write : callable
@@ -104,6 +106,7 @@ class Format:
     needs: tuple[str, ...]
     bytes_per_pixel: float
     write: Callable[[Clip, Stage, Options], Written]
+    pairs_only: bool = False
     takes: tuple[str, ...] = ()
     finish: Finish = nothing_to_finish
     heeds: frozenset[str] = frozenset()

@@ -4,13 +4,34 @@ from __future__ import annotations
 
 from scenegen.foundation.errors import InputError, nearest
 from scenegen_datasets.exports.format import Format
-from scenegen_datasets.exports.formats import kitti, unpack
+from scenegen_datasets.exports.formats import (
+    colmap,
+    exr,
+    filelist,
+    kitti,
+    monodepth2,
+    ms2,
+    nerfstudio,
+    pix2pix,
+    tartanair,
+    tum,
+    unpack,
+)
 
 FORMATS: dict[str, Format] = {
     each.name: each
     for each in (
         unpack.FORMAT,
         kitti.FORMAT,
+        tartanair.FORMAT,
+        pix2pix.FORMAT,
+        ms2.FORMAT,
+        filelist.FORMAT,
+        monodepth2.FORMAT,
+        nerfstudio.FORMAT,
+        colmap.FORMAT,
+        tum.FORMAT,
+        exr.FORMAT,
     )
 }
 """In the order people see them."""
