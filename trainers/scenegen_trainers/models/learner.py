@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
+import torch
 from jaxtyping import Bool, Float, Float32
 from torch import Tensor
 
@@ -60,10 +61,9 @@ class Learner(ABC):
     def move_to(self, fabric: Any) -> None:
         """Let Lightning Fabric place networks and optimisers on devices, in their precision."""
         self._fabric = fabric
-        for name in self.networks:
-            self.networks[name], self.optimisers[name] = fabric.setup(
-                self.networks[name], self.optimisers[name]
-            )
+        for name, network in self.networks.items():
+            network.to(memory_format=torch.channels_last)  # as convolutions on a CPU like it: up to a third faster
+            self.networks[name], self.optimisers[name] = fabric.setup(network, self.optimisers[name])
 
     def precision(self) -> Any:
         """Context in which a bare module computes as the wrapped ones do."""
