@@ -19,6 +19,7 @@ COMMANDS = {
     "info": "what a dataset holds",
     "status": "how far a dataset is while it is being made",
     "verify": "check every byte, array and rule of a dataset",
+    "release": "verify a dataset and give it a version",
     "export": "write a dataset in a format other tools read",
     "fly": "fly missions in closed loop and count collisions",
     "train": "teach a depth network on a dataset",

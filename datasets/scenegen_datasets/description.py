@@ -16,6 +16,7 @@ from scenegen_datasets.job import SPLITS, ClipJob
 from scenegen_datasets.layers import LAYERS, MEMBERS
 from scenegen_datasets.receipt import SCHEMA
 from scenegen_datasets.seal import check_seal, read_bounded, with_seal
+from scenegen_datasets.splits.faults import split_rule
 from scenegen_datasets.shape import misshapen
 
 CONVENTIONS = {
@@ -33,6 +34,9 @@ CONVENTIONS = {
 MAX_BYTES = 64 << 20
 """No sound ``dataset.json`` is larger."""
 
+_LOCK_ONLY = ("recipe", "scene_semantics", "software")
+"""What a merged dataset's lock says of each part, and ``dataset.json`` need not repeat."""
+
 _RANGES = ("hour", "latitude_deg", "sun_elevation_deg", "speed_mps", "clearance_m")
 
 
@@ -43,7 +47,7 @@ def describe(
     *,
     version: str,
     content_id: str,
-    missing: Sequence[ClipJob],
+    missing: Sequence[str],
     shard_bytes: int,
 ) -> dict[str, Any]:
     """Compose the content of ``dataset.json``; `sealed_description` makes it proof of the files beside it.
@@ -75,9 +79,11 @@ def describe(
             "shard_bytes": shard_bytes,
         },
         "splits": {s: _split(s, jobs) for s in SPLITS},
+        "split_rule": split_rule(lock),
         "maps": sorted({j.map for j in jobs}),
         "ranges": {name: list(span) for name, span in ranges_of(records).items()},
-        "missing": [j.name for j in missing],
+        "missing": list(missing),
+        "parts": [{k: v for k, v in part.items() if k not in _LOCK_ONLY} for part in lock.get("parts", ())],
         "classes": [
             {"id": int(c.id), "name": c.name, "colour": list(c.colour), "thing": c.thing} for c in CLASSES
         ],

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
@@ -30,14 +29,15 @@ from scenegen_datasets.store import (
     LOCK,
     MANIFEST,
     RECIPE,
+    RELEASES,
     clean,
     finished,
     read_lock,
 )
+from scenegen_datasets.versions.history import read_history, version_of
+from scenegen_datasets.versions.state import ClipMark, State
 
 PREVIEW = "preview"
-_SEMVER = re.compile(r"(0|[1-9]\d*)\.(0|[1-9]\d*)\.(0|[1-9]\d*)")
-
 
 class _Tally:
     """Receipts pass through once; what is needed of each is kept, its frames are not."""
@@ -45,6 +45,7 @@ class _Tally:
     def __init__(self, root: Path) -> None:
         self._root = root
         self.records: list[ClipRecord] = []
+        self.marks: dict[str, ClipMark] = {}
         self.digests: list[str] = []
         self.lines: list[bytes] = []
         self.sums: dict[str, str] = {}
@@ -66,6 +67,7 @@ class _Tally:
         digest = clip_digest(receipt)
         self.layers = receipt.layers
         self.records.append(receipt.clip)
+        self.marks[job.name] = ClipMark.of(receipt)
         self.digests.append(digest)
         self.shard_bytes += receipt.size
         self.sums[job.shard] = receipt.sha256
@@ -84,7 +86,7 @@ def clip_line(receipt: Receipt, digest: str) -> dict[str, object]:
     }
 
 
-def finish(root: Path, jobs: Sequence[ClipJob], *, version: str = "1.0.0") -> DatasetInfo:
+def finish(root: Path, jobs: Sequence[ClipJob]) -> DatasetInfo:
     """Write everything that is derived from the receipts. Idempotent; the same bytes whoever made the clips.
 
     Call it with the `DirectoryLock` held and no worker running.
@@ -95,23 +97,28 @@ def finish(root: Path, jobs: Sequence[ClipJob], *, version: str = "1.0.0") -> Da
         Dataset with a lock (`create_or_open`) and receipts. Files under ``preview/`` are taken into the manifest.
     jobs : sequence of ClipJob
         The plan. Clips without a receipt (quarantined) are named in ``dataset.json`` as missing.
-    version : str
-        Semantic version of the data.
 
     Raises
     ------
     InputError
-        If `version` is not a semantic version or no clip at all was made.
+        If no clip at all was made.
     DatasetError
-        If a receipt contradicts the plan or the other clips.
+        If a receipt contradicts the plan or the other clips, or the history of releases is damaged.
     """
-    if not _SEMVER.fullmatch(version):
-        raise InputError(f"version '{version}' is not MAJOR.MINOR.PATCH")
-    lock, done = read_lock(root), finished(root)
+    done = finished(root)
     made = [job for job in sorted(jobs) if job.name in done]
-    missing = [job for job in sorted(jobs) if job.name not in done]
+    missing = [job.name for job in sorted(jobs) if job.name not in done]
     if not made:
         raise InputError(f"{root} holds no finished clip yet; run the same render command again")
+    return derive(root, made, missing)
+
+
+def derive(root: Path, made: Sequence[ClipJob], missing: Sequence[str]) -> DatasetInfo:
+    """Write what follows from the receipts of the clips in `made`, in this order; `missing` are named as such.
+
+    The version follows as well: from the history of releases, and what changed since the last. Call it as `finish`.
+    """
+    lock, history = read_lock(root), read_history(root)
     clean(root)
     remove(root / DATASET)
     tally = _Tally(root)
@@ -121,14 +128,16 @@ def finish(root: Path, jobs: Sequence[ClipJob], *, version: str = "1.0.0") -> Da
         lock,
         tally.records,
         tally.layers,
-        version=version,
+        version="",
         content_id=content_id(tally.digests),
         missing=missing,
         shard_bytes=tally.shard_bytes,
     )
+    description["version"] = version_of(history, State.of(lock, description, tally.marks))
     write_atomic(root / CARD, card(description))
     write_atomic(root / CROISSANT, canonical.pretty(croissant(description, tally.sums)))
-    derived = {name: file_sha256(root / name) for name in (RECIPE, LOCK, CLIPS, INDEX, CARD, CROISSANT)}
+    names = (RECIPE, LOCK, CLIPS, INDEX, CARD, CROISSANT, *((RELEASES,) if history else ()))
+    derived = {name: file_sha256(root / name) for name in names}
     last = sealed_description(description, derived)
     sums = tally.sums | derived | {DATASET: hashlib.sha256(last).hexdigest()} | _preview_sums(root)
     write_atomic(root / MANIFEST, manifest_bytes(sums))

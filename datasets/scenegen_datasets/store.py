@@ -18,10 +18,12 @@ from scenegen_datasets.shape import misshapen
 
 RECIPE, LOCK, DATASET, MANIFEST = "recipe.yaml", "recipe.lock.json", "dataset.json", "MANIFEST.sha256"
 INDEX, CLIPS, CARD, CROISSANT = "index.npy", "clips.jsonl", "README.md", "croissant.json"
+RELEASES = "releases.json"
 RUN_LOG, WRITER_LOCK = "run.log.jsonl", ".lock"
 FOLDERS = ("shards", "receipts", "preview")
 
-_OURS = (RECIPE, LOCK, DATASET, MANIFEST, INDEX, CLIPS, CARD, CROISSANT, RUN_LOG, WRITER_LOCK, *FOLDERS)
+_DERIVED = (DATASET, MANIFEST, INDEX, CLIPS, CARD, CROISSANT)
+_OURS = (RECIPE, LOCK, *_DERIVED, RELEASES, RUN_LOG, WRITER_LOCK, *FOLDERS)
 _MAX_LOCK_BYTES = 16 << 20
 
 
@@ -150,6 +152,10 @@ def differing_keys(old: Any, new: Any, path: str = "") -> Iterator[str]:
 
 
 def _refuse_other_recipe(root: Path, old: Mapping[str, Any], new: Mapping[str, Any]) -> None:
+    if old.get("parts"):
+        raise InputError(
+            f"{root} is merged from other datasets and does not grow; grow one of those and merge again"
+        )
     asked = canonical.parse(canonical.canonical(stable(new["recipe"])), "recipe")
     found = list(differing_keys(stable(old["recipe"]), asked))
     if found:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+from scenegen.foundation.errors import DatasetError
 from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.plan import SPLIT_OF, SPLIT_PERIOD, split_of
 from scenegen_datasets.splits.held_out import HeldOut
@@ -45,7 +46,11 @@ def split_faults(
     (str, str)
         Path below the dataset, and what is wrong there.
     """
-    held_out = HeldOut.of_lock(lock)
+    try:
+        held_out = HeldOut.of_lock(lock)
+    except DatasetError as error:
+        yield "recipe.lock.json", str(error).partition(": ")[2]
+        return
     if "split_rule" in told and told["split_rule"] != split_rule(lock):
         yield "dataset.json", "split_rule is not that of the recipe"
     for clip in clips:

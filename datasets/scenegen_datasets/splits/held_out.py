@@ -6,6 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from scenegen.foundation.errors import DatasetError
+
 WEATHERS: Mapping[str, tuple[str, float, float]] = {
     "clear": ("cloud_fraction", 0.0, 0.25),
     "cloudy": ("cloud_fraction", 0.25, 0.95),
@@ -65,20 +67,43 @@ class HeldOut:
 
     @classmethod
     def of_recipe(cls, recipe: Mapping[str, Any]) -> HeldOut:
-        """Read the ``splits`` section of a resolved recipe; without one nothing is held out."""
+        """Read the ``splits`` section of a resolved recipe; without one nothing is held out.
+
+        Raises
+        ------
+        DatasetError
+            If it is not what a recipe holds there.
+        """
         section = recipe.get("splits") or {}
-        hours = section.get("test_hours")
-        return cls(
-            maps=tuple(section.get("test_maps") or ()),
-            hours=((float(hours[0]), float(hours[1])),) if hours else (),
-            weather=tuple(name for name in section.get("test_weather") or () if name in WEATHERS),
-        )
+        try:
+            hours = section.get("test_hours")
+            spans = ((float(hours[0]), float(hours[1])),) if hours else ()
+            held = cls(tuple(section.get("test_maps") or ()), spans, tuple(section.get("test_weather") or ()))
+            known = all(isinstance(name, str) for name in held.maps) and all(
+                name in WEATHERS for name in held.weather
+            )
+        except (AttributeError, TypeError, ValueError, IndexError, KeyError):
+            known = False
+        if not known:
+            raise DatasetError("recipe.lock.json: its section 'splits' makes no sense")
+        return held
 
     @classmethod
     def of_lock(cls, lock: Mapping[str, Any]) -> HeldOut:
-        """Of a dataset's lock: what its recipe holds out, or all that the parts of a merged dataset hold out."""
+        """Of a dataset's lock: what its recipe holds out, or all that the parts of a merged dataset hold out.
+
+        Raises
+        ------
+        DatasetError
+            If the lock makes no sense there.
+        """
         parts = lock.get("parts") or [lock]
-        return cls.union(cls.of_recipe(part["recipe"]) for part in parts)
+        if not (isinstance(parts, list) and all(isinstance(part, dict) for part in parts)):
+            raise DatasetError("recipe.lock.json: its parts make no sense")
+        recipes = [part.get("recipe") for part in parts]
+        if not all(isinstance(recipe, dict) for recipe in recipes):
+            raise DatasetError("recipe.lock.json: a part has no recipe")
+        return cls.union(map(cls.of_recipe, recipes))
 
     @classmethod
     def union(cls, several: Iterable[HeldOut]) -> HeldOut:
