@@ -80,7 +80,7 @@ DESCRIPTION: dict[str, Any] = {
     "maps": [_LINE],
     "ranges": Each(Numbers(2)),
     "missing": [_LINE],
-    "sums": Each(_SHA256),
+    "sums": Each(_SHA256, ("clips.jsonl", "index.npy")),
 }
 """Body of ``dataset.json``."""
 

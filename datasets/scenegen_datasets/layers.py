@@ -135,7 +135,7 @@ _MAX_PIXELS = 1 << 24
 def max_member_bytes(shape: tuple[int, int]) -> int:
     """Bytes a sound member of this image size stays below; 0 for an image size nobody renders."""
     rows, columns = shape
-    return rows * columns * 64 + (1 << 20) if 0 < rows * columns <= _MAX_PIXELS else 0
+    return rows * columns * 32 + (1 << 20) if 0 < rows * columns <= _MAX_PIXELS else 0
 
 
 def member_field(suffix: str) -> str:

@@ -11,7 +11,7 @@ from scenegen.foundation.errors import DatasetError
 from scenegen_datasets.seal import read_bounded
 
 _LINE = re.compile(r"([0-9a-f]{64})  ((?:[A-Za-z0-9_.-]+/)*[A-Za-z0-9_.-]+)")
-_MAX_BYTES = 256 << 20
+_MAX_BYTES = 64 << 20
 
 
 def manifest_bytes(sums: Mapping[str, str]) -> bytes:

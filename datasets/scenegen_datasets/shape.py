@@ -76,9 +76,10 @@ class Maybe:
 
 @dataclass(frozen=True)
 class Each:
-    """A mapping with any names, all of whose values have one shape."""
+    """A mapping with any names, those in `names` among them, all of whose values have one shape."""
 
     shape: Any
+    names: tuple[str, ...] = ()
 
 
 def mapping(value: Any) -> str | None:
@@ -103,6 +104,9 @@ def misshapen(value: Any, shape: Any, where: str = "") -> str | None:
     if isinstance(shape, Each):
         if not isinstance(value, Mapping):
             return _said(where, "is not a mapping")
+        missing = next((name for name in shape.names if name not in value), None)
+        if missing is not None:
+            return _said(_join(where, missing), "is missing")
         return _first((item, shape.shape, _join(where, str(name))) for name, item in value.items())
     if isinstance(shape, Mapping):
         if not isinstance(value, Mapping):

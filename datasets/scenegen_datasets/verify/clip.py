@@ -22,9 +22,11 @@ from numpy.typing import NDArray
 from scenegen.foundation import canonical
 from scenegen.foundation.errors import CorruptFrameError, DatasetError
 from scenegen_datasets import tar
+from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.content import clip_digest
 from scenegen_datasets.finish import clip_line
 from scenegen_datasets.index import rows_of
+from scenegen_datasets.inside import open_inside
 from scenegen_datasets.invariants import violations
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import LAYERS, MEMBERS
@@ -43,6 +45,7 @@ class ClipCheck:
     receipt: str
     findings: tuple[Finding, ...]
     job: ClipJob | None = None
+    clip: ClipRecord | None = None
     frames: int = 0
     size: int = 0
     sha256: str = ""
@@ -69,6 +72,7 @@ def check_clip(root: Path, path: str, quick: bool) -> ClipCheck:
         receipt=path,
         findings=tuple(findings),
         job=job,
+        clip=receipt.clip,
         frames=job.frames,
         size=receipt.size,
         sha256=receipt.sha256,
@@ -106,16 +110,15 @@ def _is_pose(pose: NDArray[np.float64]) -> bool:
 
 def _shard_findings(root: Path, receipt: Receipt, quick: bool) -> list[Finding]:
     job = receipt.clip.job
-    file = root / job.shard
-    if file.is_symlink() or not file.is_file():
-        return [Finding(job.shard, "missing (or not a plain file)")]
-    if file.stat().st_size != receipt.size:
-        return [Finding(job.shard, f"{file.stat().st_size} bytes, the receipt says {receipt.size}")]
-    if quick:
-        return []
-    descriptor = os.open(file, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC)
+    try:
+        descriptor = open_inside(root, job.shard)
+    except DatasetError as error:
+        return [Finding(job.shard, str(error).removeprefix(f"{job.shard}: "))]
     with os.fdopen(descriptor, "rb") as stream:
-        return _Walk(stream, receipt).findings()
+        size = os.fstat(descriptor).st_size
+        if size != receipt.size:
+            return [Finding(job.shard, f"{size} bytes, the receipt says {receipt.size}")]
+        return [] if quick else _Walk(stream, receipt).findings()
 
 
 class _Walk:

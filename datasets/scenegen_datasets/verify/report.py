@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from scenegen_datasets.inside import printable
+
 
 @dataclass(frozen=True, order=True)
 class Finding:
@@ -12,13 +14,17 @@ class Finding:
     Attributes
     ----------
     file : str
-        Path below the dataset; a member of a shard follows after ``: ``.
+        Path below the dataset; a member of a shard, or a frame of it, follows after ``: ``.
     reason : str
         Why it is not what it should be.
     """
 
     file: str
     reason: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "file", printable(self.file))
+        object.__setattr__(self, "reason", printable(self.reason))
 
     def __str__(self) -> str:
         return f"{self.file}: {self.reason}"

@@ -2,32 +2,35 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.atomic import is_partial
 from scenegen.foundation.errors import DatasetError
+from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.content import content_id
 from scenegen_datasets.description import read_description
 from scenegen_datasets.index import ROW, open_index
+from scenegen_datasets.inside import MAX_DEPTH, sha256_inside, walk
 from scenegen_datasets.lock import fingerprint_id, recipe_id
-from scenegen_datasets.manifest import file_sha256, read_manifest
+from scenegen_datasets.manifest import read_manifest
 from scenegen_datasets.seal import read_bounded
+from scenegen_datasets.splits.faults import split_faults
 from scenegen_datasets.store import CLIPS, DATASET, INDEX, LOCK, MANIFEST, RUN_LOG, WRITER_LOCK, read_lock
 from scenegen_datasets.verify.clip import ClipCheck
 from scenegen_datasets.verify.report import Finding
 
-_MAX_CLIPS_BYTES = 1 << 30
+_MAX_CLIPS_BYTES = 256 << 20
 
 
 def check_tree(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
     """Check the whole against its clips; `checks` in any order."""
     sound = [c for _, c in sorted((c.job, c) for c in checks if c.job is not None)]
     yield from _leaks(sound)
-    yield from _lock(root, sound)
-    files, odd = _walk(root)
+    lock = read_lock(root)
+    yield from _lock(lock, sound)
+    files, odd = _found(root)
     yield from odd
     if DATASET not in files:
         yield Finding(DATASET, "missing: the dataset still grows; finish it with the same render command")
@@ -35,17 +38,17 @@ def check_tree(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
     description: dict[str, Any] = {}
     try:
         description = read_description(root / DATASET)
-        yield from _description(root, description, sound)
+        yield from _description(lock, description, sound)
     except DatasetError as error:
         yield Finding(DATASET, _bare(error))
+    yield from (Finding(*fault) for fault in split_faults(lock, description, _records(sound)))
     yield from _sums(root, files, sound, description)
     yield from _clips(root, sound)
     yield from _index(root, sound)
 
 
-def _lock(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
+def _lock(lock: Mapping[str, Any], checks: Sequence[ClipCheck]) -> Iterator[Finding]:
     """The lock must be true to itself, and every clip made by software it names."""
-    lock = read_lock(root)
     if recipe_id(lock["recipe"], lock.get("scene_semantics", 0)) != lock["recipe_id"]:
         yield Finding(LOCK, "recipe_id is not that of the recipe in it")
     known = {fingerprint_id(print_) for print_ in [lock["fingerprint"], *lock["mixed_with"]]}
@@ -69,26 +72,36 @@ def _leaks(checks: Sequence[ClipCheck]) -> Iterator[Finding]:
             yield Finding(check.receipt, f"has the place in the plan of {ordinals[job.ordinal]}")
 
 
-def _walk(root: Path) -> tuple[set[str], list[Finding]]:
+def _found(root: Path) -> tuple[set[str], list[Finding]]:
     """Return all plain files of the dataset, and what should not be in it at all."""
     files: set[str] = set()
     odd: list[Finding] = []
-    for directory, folders, names in os.walk(root):
-        here = Path(directory).relative_to(root)
-        for name in list(folders):
-            if (root / here / name).is_symlink():
-                odd.append(Finding(str(here / name), "a symbolic link"))
-            if here == Path() and name.startswith("."):
-                folders.remove(name)  # what version control and hubs keep beside a dataset
-        for name in names:
-            path = here / name
-            if is_partial(name):
-                odd.append(Finding(str(path), "left behind by a killed writer; the next render removes it"))
-            elif (root / path).is_symlink():
-                odd.append(Finding(str(path), "a symbolic link"))
-            elif not (here == Path() and name.startswith(".")):
-                files.add(str(path))
+    for entry in walk(root):
+        name = entry.path.rpartition("/")[2]
+        if beside(entry.path):
+            continue
+        if entry.kind == "file" and is_partial(name):
+            odd.append(Finding(entry.path, "left behind by a killed writer; the next render removes it"))
+        elif entry.kind == "file":
+            files.add(entry.path)
+        elif entry.kind != "folder":
+            what = "a symbolic link" if entry.kind == "link" else "a pipe, a socket or a device"
+            odd.append(Finding(entry.path, f"{what}; `scenegen clean` removes it"))
+        elif entry.path.count("/") >= MAX_DEPTH - 1:
+            odd.append(
+                Finding(entry.path, "a folder deeper than any of a dataset; `scenegen clean` removes it")
+            )
     return files, odd
+
+
+def beside(path: str) -> bool:
+    """Whether a path belongs to what version control and hubs keep beside a dataset: hidden at its top."""
+    top, _, rest = path.partition("/")
+    return top.startswith(".") and (bool(rest) or not is_partial(top))
+
+
+def _records(checks: Sequence[ClipCheck]) -> Iterator[ClipRecord]:
+    return (check.clip for check in checks if check.clip is not None)
 
 
 def _sums(
@@ -107,7 +120,7 @@ def _sums(
         expected = proven.get(path, listed.get(path))
         if path not in files:
             yield Finding(path, "missing")
-        elif path not in shards and not path.startswith("shards/") and file_sha256(root / path) != expected:
+        elif path not in shards and not path.startswith("shards/") and sha256_inside(root, path) != expected:
             yield Finding(path, "SHA-256 differs from what was written")
         if manifest is not None and listed.get(path) != expected:
             yield Finding(MANIFEST, f"{'disagrees on' if path in listed else 'does not list'} {path}")
@@ -120,15 +133,16 @@ def _proven(root: Path, checks: Sequence[ClipCheck], description: Mapping[str, A
     """SHA-256 by path, from files that carry their own checksum."""
     sums = dict(description.get("sums", {}))
     if description:
-        sums[DATASET] = file_sha256(root / DATASET)
+        sums[DATASET] = sha256_inside(root, DATASET)
     for check in checks:
         assert check.job is not None
-        sums |= {check.job.shard: check.sha256, check.receipt: file_sha256(root / check.receipt)}
+        sums |= {check.job.shard: check.sha256, check.receipt: sha256_inside(root, check.receipt)}
     return sums
 
 
-def _description(root: Path, told: Mapping[str, Any], checks: Sequence[ClipCheck]) -> Iterator[Finding]:
-    lock = read_lock(root)
+def _description(
+    lock: Mapping[str, Any], told: Mapping[str, Any], checks: Sequence[ClipCheck]
+) -> Iterator[Finding]:
     jobs = [c.job for c in checks if c.job is not None]
     facts: dict[str, Any] = {
         "content_id": content_id(c.digest for c in checks),
@@ -171,8 +185,18 @@ def _index(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
         return
     at = 0
     for check in checks:
-        if rows[at : at + check.frames].tobytes() != check.rows:
-            yield Finding(INDEX, f"rows {at}..{at + check.frames - 1} differ from {check.receipt}")
+        told = rows[at : at + check.frames].tobytes()
+        if told != check.rows:
+            assert check.job is not None
+            size = ROW.itemsize
+            keys = (
+                k for k in range(check.frames) if told[k * size :][:size] != check.rows[k * size :][:size]
+            )
+            first = next(keys)
+            more = f" and {count} more" if (count := sum(1 for _ in keys)) else ""
+            yield Finding(
+                INDEX, f"row {at + first} ({check.job.key(first)}){more} differs from {check.receipt}"
+            )
         at += check.frames
     assert at * ROW.itemsize == sum(len(c.rows) for c in checks)
 

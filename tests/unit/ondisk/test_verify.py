@@ -206,7 +206,7 @@ def test_a_forged_index_is_found(dataset: Path, found: Found) -> None:
     rows["time_s"][5] = 99.0
     (dataset / "index.npy").write_bytes(data)
     reseal(dataset)
-    assert "rows 4..7" in found(dataset)["index.npy"]
+    assert "row 5 (city-00000-001-0001) differs from receipts" in found(dataset)["index.npy"]
 
 
 def test_a_forged_description_is_found(dataset: Path, found: Found) -> None:
