@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any, SupportsIndex
 
 import numpy as np
+from numpy.typing import NDArray
 
 from scenegen.foundation.errors import CorruptFrameError, DatasetError, InputError, nearest
 from scenegen_datasets.index import checked, job_of
@@ -123,6 +124,11 @@ class PairDataset:
         if self.split is not None:
             counts[first["split"] != SPLITS.index(self.split)] = 0
         self._ends = np.cumsum(counts)
+
+    @property
+    def clip_ends(self) -> NDArray[np.int64]:
+        """How many samples there are up to the end of each clip, shape (clips,)."""
+        return self._ends
 
     def __len__(self) -> int:
         return int(self._ends[-1]) if len(self._ends) else 0

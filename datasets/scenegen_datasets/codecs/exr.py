@@ -84,6 +84,22 @@ def decode(
         raise CorruptFrameError(f"EXR does not decode: {str(error).splitlines()[0]}") from None
 
 
+def declared(data: bytes) -> tuple[tuple[int, int], set[str]]:
+    """Rows and columns an EXR says it has, and the names of its channels.
+
+    Raises
+    ------
+    CorruptFrameError
+        If its header is damaged.
+    """
+    header, _ = _header(data)
+    window = header.get("dataWindow", b"")
+    if len(window) != 16:
+        raise CorruptFrameError("EXR does not say how large it is")
+    left, top, right, bottom = struct.unpack("<4i", window)
+    return (bottom - top + 1, right - left + 1), set(_channel_list(header.get("channels", b"")))
+
+
 def _check(
     header: Mapping[str, bytes], shape: tuple[int, int], channels: Mapping[str, np.dtype[Any]]
 ) -> None:

@@ -50,6 +50,18 @@ def decode(data: bytes, shape: tuple[int, int]) -> NDArray[np.float32]:
     return decoded(data, shape, np.float32, "TIFF")
 
 
+def declared_shape(data: bytes) -> tuple[int, int]:
+    """Rows and columns a TIFF says it has; (0, 0) if it does not say.
+
+    Raises
+    ------
+    CorruptFrameError
+        If it is no TIFF.
+    """
+    tags = _directory(data)
+    return tags.get(257, 0), tags.get(256, 0)
+
+
 def _check(data: bytes, shape: tuple[int, int]) -> None:
     """Read the one directory ourselves: sizes are known before the library allocates anything."""
     tags = _directory(data)
