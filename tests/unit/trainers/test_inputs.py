@@ -163,6 +163,21 @@ def test_channels_and_range() -> None:
     assert centred(np.array([0, 255], np.uint8)).tolist() == [-1.0, 1.0]
 
 
+@pytest.mark.parametrize("frames", [1, 2])
+def test_flow_can_have_a_channel_of_its_own(frames: int) -> None:
+    knobs = InputKnobs.model_validate({"frames": frames, "flow": "truth", "flow_shown": "channel"})
+    now, before = np.full((6, 8), 9000, np.uint16), np.full((6, 8), 3000, np.uint16)
+    now[0, 0] = 0
+    flow = np.zeros((6, 8, 2), np.float32)
+    flow[..., 0] = np.arange(8)
+    seen = look(now, before, knobs, flow)
+    image = compose(seen, knobs)
+    assert image.shape == (knobs.channels, 6, 8) == (frames + 1, 6, 8)
+    assert (image[0] == seen.now).all() and (image[-1] == simplified_depth(flow, knobs)).all()
+    assert np.abs(image[-1] - np.arange(8) * 255.0 / 7.0).max() <= 1.0  # fractions are cut off
+    assert (compose(seen.mirrored(), knobs) == image[:, :, ::-1]).all()
+
+
 def test_true_flow_has_to_be_there() -> None:
     now = textured(30, 30)
     with pytest.raises(InputError, match="known in datasets only"):

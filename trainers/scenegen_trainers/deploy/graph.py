@@ -87,11 +87,11 @@ def onnx_graph(checkpoint: Checkpoint) -> bytes:
 def example_inputs(checkpoint: Checkpoint, rng: np.random.Generator) -> dict[str, np.ndarray]:
     """Inputs of the right names, types and sizes: smooth relief, no real scene."""
     rows, columns = int(checkpoint.camera["height_px"]), int(checkpoint.camera["width_px"])
-    relief = rng.normal(size=(2, rows, columns)).cumsum(axis=1).cumsum(axis=2)
+    relief = rng.normal(size=(3, rows, columns)).cumsum(axis=1).cumsum(axis=2)
     relief = (relief - relief.min()) / (relief.max() - relief.min())
     if takes_counts(checkpoint.network.inputs):
         counts = np.rint(3000.0 + 6000.0 * relief).astype(np.float32)
-        return {"counts": counts[:1], "previous": counts[1:]}
+        return {"counts": counts[:1], "previous": counts[1:2]}
     channels = checkpoint.network.inputs.channels
     return {"embedded": np.rint(255.0 * relief[None, :channels]).astype(np.uint8)}
 

@@ -36,6 +36,8 @@ class InputKnobs(Section):
     pixel as its sample does, or up to `flow_full_px`. The first loses speed, the others keep it."""
     flow_full_px: Annotated[Number, Field(gt=0.0, le=1000.0)] = 8.0
     """Displacement that becomes white under `flow_scale` full [px]."""
+    flow_shown: Literal["embedded", "channel"] = "embedded"
+    """The simplified depth image inside the thermal one, Eq. (1), or whole in a channel of its own."""
     interval: Annotated[Count, Field(ge=1, le=1000)] = 5
     """Every how many rows and columns a pixel of the simplified depth image is embedded, Eq. (1). 1 replaces all."""
 
@@ -52,7 +54,7 @@ class InputKnobs(Section):
     @property
     def channels(self) -> int:
         """Of the network's input."""
-        return self.frames
+        return self.frames + int(self.flow != "none" and self.flow_shown == "channel")
 
 
 class TargetKnobs(Section):

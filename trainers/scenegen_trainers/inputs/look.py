@@ -79,11 +79,15 @@ def look(
 
 
 def compose(seen: Look, knobs: InputKnobs) -> UInt8[np.ndarray, "channels rows columns"]:
-    """The network's input as grey levels: the embedded image, and the previous frame where two are asked for."""
-    image = seen.now
-    if seen.flow is not None:
-        image = embed(seen.now, simplified_depth(seen.flow, knobs), knobs.interval)
-    return np.stack([image, seen.before][: knobs.frames])
+    """The network's input as grey levels: the thermal image, embedded or not, the previous frame where two are asked
+    for, and the simplified depth image where it has a channel of its own."""
+    frames = [seen.now, seen.before][: knobs.frames]
+    if seen.flow is None:
+        return np.stack(frames)
+    simplified = simplified_depth(seen.flow, knobs)
+    if knobs.flow_shown == "channel":
+        return np.stack([*frames, simplified])
+    return np.stack([embed(seen.now, simplified, knobs.interval), *frames[1:]])
 
 
 def centred(grey: UInt8[np.ndarray, "..."]) -> Float32[np.ndarray, "..."]:
