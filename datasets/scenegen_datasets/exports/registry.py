@@ -8,14 +8,18 @@ from scenegen_datasets.exports.formats import (
     colmap,
     exr,
     filelist,
+    hdf5,
+    hf,
     kitti,
     monodepth2,
     ms2,
     nerfstudio,
     pix2pix,
+    rerun,
     tartanair,
     tum,
     unpack,
+    zarr,
 )
 
 FORMATS: dict[str, Format] = {
@@ -32,6 +36,10 @@ FORMATS: dict[str, Format] = {
         colmap.FORMAT,
         tum.FORMAT,
         exr.FORMAT,
+        hf.FORMAT,
+        zarr.FORMAT,
+        hdf5.FORMAT,
+        rerun.FORMAT,
     )
 }
 """In the order people see them."""
