@@ -13,6 +13,7 @@ from scenegen.maps.own_scene.own_scene import describe
 from scenegen_cli.console import say, say_json
 from scenegen_cli.making import make, plan_in_words, processes
 from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
+from scenegen_datasets.licence import checked_licence
 from scenegen_datasets.recipe import Recipe, resolve_recipe, settle_pairs
 from scenegen_datasets.render_job import Job
 from scenegen_datasets.resolve import Source, leaves, merge
@@ -38,6 +39,8 @@ class Render:
     """Verify the whole dataset at the end."""
     allow_mixed: bool = False
     """Go on with a dataset that other software versions began."""
+    license: str | None = None
+    """Licence of the data, by its SPDX name; CC-BY-4.0 if nothing else is said."""
     json: bool = False
     """Report as JSON."""
 
@@ -63,6 +66,7 @@ def run(arguments: Sequence[str]) -> int:
         asked=asked,
         processes=processes(command.jobs),
         allow_mixed=command.allow_mixed,
+        license=None if command.license is None else checked_licence(command.license),
     )
     if command.dry_run:
         _say_plan(job, command)

@@ -1,4 +1,4 @@
-"""``README.md``: the card that people and Hugging Face read."""
+"""``README.md``: the card that people and Hugging Face read, and the datasheet of the data (Gebru et al., 2021)."""
 
 from __future__ import annotations
 
@@ -7,9 +7,36 @@ from collections.abc import Mapping
 from typing import Any
 
 from scenegen_datasets.job import SPLITS
+from scenegen_datasets.licence import hub_lines, licence_of, licence_url
 
 _HUB_SPLITS = {"train": "train", "val": "validation", "test": "test"}
 _SIZES = ((1_000, "n<1K"), (10_000, "1K<n<10K"), (100_000, "10K<n<100K"), (1_000_000, "100K<n<1M"))
+
+_MOTIVATION = """\
+Depth from a thermal camera lets a drone fly at night. Recording thermal images with dense metric depth and flow outdoors
+needs a lidar, a calibrated rig and luck with the weather; simulators that paint objects in one grey each teach a network
+to read the paint. This dataset stands between the two: temperatures follow from a heat balance of material, hour, weather,
+orientation and shadow, and depth, flow and labels are exact."""
+
+_PROCESS = """\
+Worlds are procedural. The temperature of every surface follows from a periodic heat balance (sun, sky, wind, neighbours,
+conduction); a ray tracer carries band radiance through the air to the camera; a microbolometer model (lens, lag, noise of
+pixels, rows and columns, 14-bit scale) makes counts of it. Nothing was recorded, collected from people, or labelled by
+hand. `recipe.lock.json` holds every setting and version: the same recipe gives the same data again."""
+
+_USES = """\
+* depth from thermal images, alone or with the frame before; optical flow and its limits on low-contrast images
+* segmentation and detection from temperature; sensor studies with other noise on the stored radiance (`scenegen sense`)
+* pretraining before real thermal images, and ablations that no recording allows: the same flight at another hour
+
+Not for: absolute radiometry of real places, the looks of particular cities, recognising persons, or the last step
+before a machine flies among people without tests on real images."""
+
+_LIMITS = """\
+* Plants, people and vehicles are simple bodies with a handful of temperatures; heat stands still during a clip.
+* Diffuse surfaces reflect what was baked for them; only glass, water and bare metal mirror, once.
+* There is no rain, snow or fog in the air, and no lens flare, vignetting or shutter event in the camera.
+* Labels come from the centre of a pixel, radiance from its area: at silhouettes they can disagree."""
 
 
 def card(description: Mapping[str, Any]) -> bytes:
@@ -23,16 +50,12 @@ def _front_matter(d: Mapping[str, Any]) -> list[str]:
     lines = [
         "---",
         f"pretty_name: {json.dumps(d['name'])}",
+        *hub_lines(licence_of(d)),
         "task_categories:",
         "  - depth-estimation",
         "  - image-to-image",
         "tags:",
-        "  - thermal",
-        "  - lwir",
-        "  - infrared",
-        "  - optical-flow",
-        "  - synthetic",
-        "  - drone",
+        *(f"  - {tag}" for tag in ("thermal", "lwir", "infrared", "optical-flow", "synthetic", "drone")),
         "  - webdataset",
         "size_categories:",
         f"  - {size}",
@@ -48,12 +71,6 @@ def _front_matter(d: Mapping[str, Any]) -> list[str]:
 
 def _body(d: Mapping[str, Any]) -> list[str]:
     counts, grid = d["counts"], d["grid"]
-    layers = [
-        f"| `{x['name']}` | `{x['member']}` | {x['dtype']} | {x['unit']} | {x['meaning']} |"
-        for x in d["layers"]
-    ]
-    splits = [f"| {s} | {n['pairs']} | {n['clips']} | {n['worlds']} |" for s, n in d["splits"].items()]
-    ranges = [f"| {name} | {low:.4g} | {high:.4g} |" for name, (low, high) in sorted(d["ranges"].items())]
     return [
         f"# {d['name']}",
         "",
@@ -64,15 +81,39 @@ def _body(d: Mapping[str, Any]) -> list[str]:
         "```python",
         "from scenegen_datasets import PairDataset",
         "",
-        'pairs = PairDataset("PATH", split="train", layers=("thermal", "depth"))',
+        'pairs = PairDataset("PATH", split="train", layers=("thermal", "depth"))  # a directory or a URL',
         "```",
         "",
         "Every shard is a plain tar in WebDataset naming; thermal and depth open with OpenCV, Pillow and Hugging Face",
         "`datasets` without this package. `sha256sum -c MANIFEST.sha256` checks every file.",
-        "",
+        *_section("Why it exists", [_MOTIVATION]),
+        *_section("What is in it", _composition(d)),
+        *_section("How it was made", [_PROCESS]),
+        *_section("What it is for", [_USES]),
+        *_section("Limits", [_LIMITS]),
+        *_section("Licence", _licence(d)),
+    ]
+
+
+def _section(title: str, lines: list[str]) -> list[str]:
+    return ["", f"## {title}", "", *lines]
+
+
+def _composition(d: Mapping[str, Any]) -> list[str]:
+    layers = [
+        f"| `{x['name']}` | `{x['member']}` | {x['dtype']} | {x['unit']} | {x['meaning']} |"
+        for x in d["layers"]
+    ]
+    splits = [f"| {s} | {n['pairs']} | {n['clips']} | {n['worlds']} |" for s, n in d["splits"].items()]
+    ranges = [f"| {name} | {low:.4g} | {high:.4g} |" for name, (low, high) in sorted(d["ranges"].items())]
+    conventions = [f"* {name}: {meaning}" for name, meaning in d["conventions"].items()]
+    missing = [f"{len(d['missing'])} planned clips could not be made and are left out.", ""]
+    return [
         "| layer | member | type | unit | meaning |",
         "|---|---|---|---|---|",
         *layers,
+        "",
+        *conventions,
         "",
         "| split | pairs | clips | worlds |",
         "|---|---|---|---|",
@@ -83,6 +124,16 @@ def _body(d: Mapping[str, Any]) -> list[str]:
         "| quantity | smallest | largest |",
         "|---|---|---|",
         *ranges,
+        "",
+        *(missing if d["missing"] else []),
+        "It holds no personal data: people in it are figures without faces or names.",
+    ]
+
+
+def _licence(d: Mapping[str, Any]) -> list[str]:
+    name = licence_of(d)
+    return [
+        f"The data are licensed under [{name}]({licence_url(name)}).",
         "",
         f"Version {d['version']}, recipe `{d['recipe_id'][:16]}`, content `{d['content_id'][:16]}`.",
     ]

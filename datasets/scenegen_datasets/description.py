@@ -14,10 +14,11 @@ from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.documents import DESCRIPTION
 from scenegen_datasets.job import SPLITS, ClipJob
 from scenegen_datasets.layers import LAYERS, MEMBERS
+from scenegen_datasets.licence import licence_of
 from scenegen_datasets.receipt import SCHEMA
 from scenegen_datasets.seal import check_seal, read_bounded, with_seal
-from scenegen_datasets.splits.faults import split_rule
 from scenegen_datasets.shape import misshapen
+from scenegen_datasets.splits.faults import split_rule
 
 CONVENTIONS = {
     "world": "right-handed ENU: x east, y north, z up [m]",
@@ -62,6 +63,7 @@ def describe(
         "name": lock["name"],
         "version": version,
         "schema_version": SCHEMA,
+        "license": licence_of(lock),
         "recipe_id": lock["recipe_id"],
         "content_id": content_id,
         "fingerprints": [lock["fingerprint"], *lock["mixed_with"]],

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.canonical import digest
+from scenegen_datasets.licence import KEY
 
 VOLATILE_KEYS = ("pairs", "out", "jobs", "engine", "part")
 """Top-level recipe keys that do not change any sample, hence not part of ``recipe_id``."""
@@ -69,6 +70,7 @@ def make_lock(
     scene_semantics: int,
     render: Mapping[str, str],
     git_sha: str | None = None,
+    license: str | None = None,
 ) -> dict[str, Any]:
     """Compose the lock.
 
@@ -84,6 +86,8 @@ def make_lock(
         The renderer's own part of the fingerprint (mitsuba, drjit, LLVM, variant).
     git_sha : str or None
         Commit of the code, if it is known.
+    license : str or None
+        Of the data, if another than the default was asked for.
     """
     prints = fingerprint(render)
     return {
@@ -96,6 +100,7 @@ def make_lock(
         "mixed_with": [],
         "software": {"thermal-scenegen": _version("thermal-scenegen"), "python": platform.python_version()},
         "git_sha": git_sha,
+        **({} if license is None else {KEY: license}),
     }
 
 

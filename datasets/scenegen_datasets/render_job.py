@@ -50,6 +50,8 @@ class Job:
         Worker processes.
     allow_mixed : bool
         Accept frames of another render fingerprint in the same dataset.
+    license : str or None
+        Of the data, by its SPDX name; None leaves it as it is, or the default.
     """
 
     recipe: Recipe
@@ -58,11 +60,12 @@ class Job:
     asked: Mapping[str, Any]
     processes: int
     allow_mixed: bool = False
+    license: str | None = None
 
     @property
     def name(self) -> str:
-        """Of the dataset: its directory's, in letters every tool takes."""
-        return re.sub(r"[^a-z0-9._-]+", "-", self.root.resolve().name.lower()).strip("-.")[:64] or "dataset"
+        """Of the dataset."""
+        return dataset_name(self.root)
 
     @cached_property
     def clips(self) -> tuple[ClipJob, ...]:
@@ -78,6 +81,11 @@ class Job:
         frames = sum(clip.frames for clip in self.clips)
         per_pixel = sum(BYTES_PER_PIXEL[member] for member in layers_by_member(self.recipe.stored_layers))
         return round(frames * (camera.width_px * camera.height_px * per_pixel + BYTES_PER_FRAME))
+
+
+def dataset_name(root: Path) -> str:
+    """Name of a dataset: its directory's, in letters every tool takes."""
+    return re.sub(r"[^a-z0-9._-]+", "-", root.resolve().name.lower()).strip("-.")[:64] or "dataset"
 
 
 def prepare(job: Job) -> None:

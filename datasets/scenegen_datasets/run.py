@@ -110,6 +110,7 @@ def run(job: Job, render: Mapping[str, str], told: Told) -> Outcome:
         name=job.name,
         scene_semantics=SCENE_SEMANTICS,
         render=render,
+        license=job.license,
     )
     prepare(job)
     with DirectoryLock(job.root):

@@ -11,6 +11,7 @@ from scenegen.foundation.atomic import remove, remove_partials, write_atomic
 from scenegen.foundation.errors import DatasetError, InputError, NoSpaceError
 from scenegen_datasets import documents
 from scenegen_datasets.inside import walk
+from scenegen_datasets.licence import KEY
 from scenegen_datasets.lock import stable
 from scenegen_datasets.receipt import promised_size, receipt_paths, shard_of
 from scenegen_datasets.seal import read_bounded
@@ -183,6 +184,8 @@ def _joined(root: Path, old: Mapping[str, Any], new: Mapping[str, Any], allow_mi
             **({"pairs": new["recipe"]["pairs"]} if "pairs" in new["recipe"] else {}),
         },
     }
+    if KEY in new:
+        joined[KEY] = new[KEY]
     known = [old["fingerprint"], *old["mixed_with"]]
     if new["fingerprint"] not in known:
         if not allow_mixed:
