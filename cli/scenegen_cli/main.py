@@ -25,6 +25,7 @@ COMMANDS = {
     "train": "teach a depth network on a dataset",
     "evaluate": "judge a trained network",
     "table1": "the paper's Table 1 on a dataset",
+    "table2": "the paper's Table 2 in closed loop",
     "onnx": "export a trained network, and what it costs",
     "doctor": "check this machine and say what to do",
     "maps": "list the kinds of worlds",
