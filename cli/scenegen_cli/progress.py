@@ -66,6 +66,10 @@ class Meter:
             self._task = None
         self._show("verifying", done, total, f"clip {done}/{total}")
 
+    def audited(self, done: int, total: int) -> None:
+        """Steps were audited."""
+        self._show("auditing", done, total, f"step {done}/{total}")
+
     def exported(self, done: int, total: int) -> None:
         """Clips were exported."""
         self._show("exporting", done, total, f"clip {done}/{total}")

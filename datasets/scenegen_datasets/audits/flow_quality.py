@@ -32,7 +32,9 @@ ESTIMATORS: Mapping[str, Estimator] = {"Farneback": farneback, "DIS": dis}
 INVERTED_NOTE = 0.1
 """Share of frames with inverted flow from which on it is worth a note."""
 
-_ORDERED = 0.2  # the truth must order depths this clearly before an estimate can be called inverted
+ORDERED = 0.2
+"""The true flow must order depths this clearly before an estimate can be called inverted."""
+
 _MOVING_PX = 0.5
 _PIXELS = 6000
 _FEWEST_PIXELS = 50
@@ -73,7 +75,7 @@ class FlowScore:
         """Whether far things got the longer flow, or flow points backwards."""
         if self.heading is not None and self.heading < 0.0:
             return True
-        return self.order is not None and self.order < 0.0 and (self.true_order or 0.0) > _ORDERED
+        return self.order is not None and self.order < 0.0 and (self.true_order or 0.0) > ORDERED
 
 
 @dataclass(frozen=True)

@@ -178,7 +178,7 @@ def _verdict(steps: int, spread: dict[str, Spread]) -> Verdict:
 
 
 def _small(value: float | None) -> str:
-    return "-" if value is None else f"{value:.1g}" if value < 0.01 else f"{value:.2f}"
+    return "-" if value is None else "less than 0.001" if value < 0.001 else f"{value:.2g}"
 
 
 def _stands(still: Still) -> Bool[np.ndarray, "rows columns"]:

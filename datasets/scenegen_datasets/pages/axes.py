@@ -7,7 +7,11 @@ from dataclasses import dataclass
 
 from scenegen_datasets.pages.markup import text
 
-_SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+"""For exponents."""
+
+
+_LARGE_PX = 450  # what is wider gets larger letters on a narrow page
 
 
 @dataclass(frozen=True)
@@ -69,7 +73,7 @@ def log_ticks(low: float, high: float, about: int = 5) -> list[float]:
 def tick_words(value: float, log: bool = False) -> str:
     """A tick as it is written: 1 000 and 10⁻⁶ rather than 1e3 and 1e-06."""
     if value and log and not 1e-3 <= abs(value) < 1e5:
-        return f"10{str(round(math.log10(value))).translate(_SUPERSCRIPT)}"
+        return f"10{str(round(math.log10(value))).translate(SUPERSCRIPT)}"
     if abs(value) >= 1e4:
         return f"{value:,.0f}"
     return f"{round(value, 10):g}"
@@ -127,4 +131,8 @@ class Frame:
     def svg(self, *parts: str, words: str) -> str:
         """The whole chart; `words` say what it shows to those who cannot see it."""
         inside = "".join(parts)
-        return f'<svg viewBox="0 0 {self.width} {self.height}" role="img" aria-label="{text(words)}">{inside}</svg>'
+        kind = "large" if self.width > _LARGE_PX else "small"
+        return (
+            f'<svg viewBox="0 0 {self.width} {self.height}" class="{kind}" role="img" '
+            f'aria-label="{text(words)}">{inside}</svg>'
+        )

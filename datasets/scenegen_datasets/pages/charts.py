@@ -9,6 +9,12 @@ from scenegen_datasets.pages.axes import Frame, Scale, tick_words
 from scenegen_datasets.pages.markup import Html, text
 from scenegen_datasets.pages.sheet import SERIES
 
+SMALL = Frame()
+"""Of a chart in one of three columns."""
+
+LARGE = Frame(width=540, height=280, left=54, bottom=42)
+"""Of a chart in one of two columns."""
+
 
 @dataclass(frozen=True)
 class Bars:
@@ -35,7 +41,7 @@ def histogram(
     log: bool = False,
     asked: tuple[float, float] | None = None,
     mark: tuple[float, str] | None = None,
-    frame: Frame = Frame(left=14),  # noqa: B008 - frozen
+    frame: Frame = SMALL,
 ) -> Html:
     """Distributions over one axis, each scaled to its own total.
 
@@ -56,9 +62,9 @@ def histogram(
     low = min(s.edges[0] for s in series)
     high = max(s.edges[-1] for s in series)
     x = frame.across(low, high, log)
-    shares = [[count / (sum(s.counts) or 1.0) for count in s.counts] for s in series]
-    y = frame.up(0.0, max(max(found) for found in shares) * 1.05 or 1.0)
-    parts = [_asked(x, y, asked)] if asked else []
+    shares = [[100.0 * count / (sum(s.counts) or 1.0) for count in s.counts] for s in series]
+    y = frame.up(0.0, max(max(found) for found in shares) * (1.18 if mark else 1.04) or 1.0)
+    parts = [frame.side(y, " %", 3), *([_asked(x, y, asked)] if asked else [])]
     for s, found in zip(series, shares, strict=True):
         parts.append(_outline(s, found, x, y) if len(series) > 1 else _bars(s, found, x, y))
     if mark:
@@ -81,7 +87,7 @@ def _bars(bars: Bars, shares: Sequence[float], x: Scale, y: Scale) -> str:
         if share <= 0.0:
             continue
         a, b, top = x(left), x(right), y(share)
-        title = f"{tick_words(left)} to {tick_words(right)}: {100 * share:.1f} %"
+        title = f"{tick_words(left)} to {tick_words(right)}: {share:.1f} %"
         parts.append(
             f'<rect x="{a + 0.5:.1f}" y="{top:.1f}" width="{max(b - a - 1.0, 0.6):.1f}" '
             f'height="{y.start - top:.1f}" fill="{bars.colour}"><title>{text(title)}</title></rect>'
@@ -134,7 +140,7 @@ def curves(
     log_y: bool = False,
     unit: str = "",
     level: float | None = None,
-    frame: Frame = Frame(height=220),  # noqa: B008 - frozen
+    frame: Frame = LARGE,
 ) -> Html:
     """Lines over two axes.
 

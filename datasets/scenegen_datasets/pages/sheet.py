@@ -51,7 +51,8 @@ grid-template-columns:repeat(auto-fill,minmax(min(var(--least,330px),100%),1fr))
 .card{background:var(--card);border:1px solid var(--line);border-radius:10px;padding:16px;min-width:0}
 .card .figure{font-size:24px;font-weight:620;letter-spacing:-.02em;line-height:1.2}
 .key{display:flex;gap:6px 18px;flex-wrap:wrap;margin:8px 0 12px;color:var(--soft);font-size:13px}
-.key i,.swatch{display:inline-block;width:11px;height:11px;border-radius:3px;margin-right:6px;vertical-align:-1px}
+.key i,.swatch{display:inline-block;width:11px;height:11px;border-radius:3px;margin-right:6px;vertical-align:-1px;
+box-shadow:inset 0 0 0 1px var(--line)}
 details{margin-top:12px}
 summary{cursor:pointer;color:var(--soft)}
 img{display:block;max-width:100%;height:auto;border-radius:4px}
@@ -64,6 +65,7 @@ svg .line{fill:none;stroke-width:2;stroke-linejoin:round}
 svg .band{opacity:.18}
 svg .whisker{stroke-width:1.2;opacity:.75}
 svg.bar{height:12px;min-width:120px;border-radius:3px}
-@media(max-width:640px){main{padding:24px 16px 60px}h1{font-size:24px}h2{margin-top:42px}}
+@media(max-width:640px){main{padding:24px 16px 60px}h1{font-size:24px}h2{margin-top:42px}
+td:first-child{min-width:8.5em}svg.large text{font-size:16px}}
 """
 )

@@ -38,7 +38,7 @@ def wind(speed_mps: float) -> str:
 
 def celsius(kelvin: float) -> str:
     """Such as ``12 °C``."""
-    return f"{kelvin - 273.15:.0f} °C"
+    return f"{round(kelvin - 273.15)} °C"
 
 
 def clip_words(facts: Mapping[str, Any]) -> str:

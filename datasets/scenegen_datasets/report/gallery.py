@@ -19,7 +19,7 @@ from scenegen_datasets.report.selection import Selection
 
 SHEET = """
 .moment{margin:22px 0 0}
-.moment .head,.flight .head{font-size:13px;margin:0 0 6px;color:var(--faint)}
+.moment .head,.flight .head{font-size:13px;margin:0 0 6px;color:var(--faint);max-width:none}
 .moment b,.flight b{color:var(--ink);font-weight:600;margin-right:10px}
 .tiles{display:grid;grid-template-columns:repeat(var(--layers),minmax(0,1fr));gap:8px}
 .tiles img{width:100%}

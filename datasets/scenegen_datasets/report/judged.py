@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
+from scenegen_datasets.audits.histogram import Histogram
 from scenegen_datasets.audits.labels import LabelConsistency
 from scenegen_datasets.audits.leak import DepthLeak
-from scenegen_datasets.pages.charts import Bars, Curve, curves, histogram, key, share_bar
-from scenegen_datasets.pages.markup import Html, folded
+from scenegen_datasets.pages.charts import LARGE, Curve, curves, histogram, key, share_bar
+from scenegen_datasets.pages.markup import Html, element, folded
 from scenegen_datasets.pages.sheet import SERIES
 from scenegen_datasets.pages.tables import Column, number, table
-from scenegen_datasets.report.words import card, cards, figures, note, said
+from scenegen_datasets.report.words import bars, card, cards, figures, note, said
 
 _REGRESSORS = (
-    ("one_pixel", "counts of the pixel", "any curve"),
-    ("one_pixel_grey", "grey level of the pixel in its frame", "any curve"),
-    ("linear", "counts, grey level, mean and roughness around it", "a plane"),
-    ("row", "row of the pixel", "any curve"),
-    ("row_and_grey", "row and grey level", "any function"),
+    ("one_pixel", "counts of the pixel, any curve"),
+    ("one_pixel_grey", "its grey level in the frame, any curve"),
+    ("linear", "both, and mean and roughness around it, a plane"),
+    ("row", "row of the pixel, any curve"),
+    ("row_and_grey", "row and grey level, any function"),
 )
 
 
@@ -23,17 +24,13 @@ def leak(found: DepthLeak) -> Html:
     """What simple guesses explain, and depth by grey level."""
     if found.explained is None or found.lookup is None or found.information is None:
         return said(found.verdict)
-    scores = [(what, how, getattr(found.explained, name)) for name, what, how in _REGRESSORS]
-    rows = [
-        (
-            what,
-            how,
-            f"{score:.2f}",
-            share_bar(score, SERIES[2] if "row" in what and "grey" not in what else SERIES[0]),
+    rows = []
+    for name, what in _REGRESSORS:
+        score = getattr(found.explained, name)
+        rows.append(
+            (what, f"{score:.2f}", share_bar(score, SERIES[5] if name.startswith("row") else SERIES[0]))
         )
-        for what, how, score in scores
-    ]
-    guesses = table((Column("guess from"), "by", number("R²"), Column("", "wide")), rows)
+    guesses = table((Column("guess from"), number("R²"), Column("", "wide")), rows)
     curve, told = found.lookup, found.information
     line = Curve("depth by grey level", curve.grey, curve.mean_m, SERIES[0], curve.low_m, curve.high_m)
     span = (min(curve.low_m) * 0.8, max(curve.high_m) * 1.25)
@@ -58,9 +55,10 @@ def leak(found: DepthLeak) -> Html:
     return Html(
         said(found.verdict)
         + cards(
-            card("What simple guesses explain", guesses), card("Depth by grey level", chart), least_px=460
+            card("What simple guesses explain", guesses, element("h3", "Mutual information"), information),
+            card("Depth by grey level", chart),
+            least_px=460,
         )
-        + cards(card("Mutual information", information), least_px=460)
         + how
     )
 
@@ -80,23 +78,15 @@ def labels(found: LabelConsistency) -> Html:
     ]
     columns = (Column("difference"), number("median"), number("95 %"), number("99 %"), number("pixels"))
     flow = histogram(
-        [Bars("flow", found.flow_histogram.edges, found.flow_histogram.counts)],
-        "stored flow against depth and poses [px]",
-        log=True,
+        [bars(found.flow_histogram)], "stored flow against depth and poses [px]", log=True, frame=LARGE
     )
-    heat = histogram(
-        [
-            Bars("unmoved", found.still_histogram.edges, found.still_histogram.counts, SERIES[1]),
-            Bars(
-                "where the flow points",
-                found.warped_histogram.edges,
-                found.warped_histogram.counts,
-                SERIES[0],
-            ),
-        ],
+    heat = curves(
+        [_below(found.still_histogram, SERIES[1]), _below(found.warped_histogram, SERIES[0])],
         "difference to the next frame [mK]",
-        log=True,
-        mark=(max(found.noise_mK, 5.0), "two frames of noise"),
+        (found.still_histogram.edges[0], found.still_histogram.edges[-1]),
+        (0.0, 100.0),
+        log_x=True,
+        unit=" %",
     )
     words = key([(SERIES[0], "read where the flow points"), (SERIES[1], "read at the same pixel")])
     how = folded(
@@ -110,6 +100,17 @@ def labels(found: LabelConsistency) -> Html:
     return Html(
         said(found.verdict)
         + table(columns, [row for row in rows if row[4] != "0"])
-        + cards(card("Geometry", flow), card("Brightness", words, heat), least_px=420)
+        + cards(
+            card("Geometry", flow), card("Brightness: pixels that differ by less", words, heat), least_px=420
+        )
         + how
     )
+
+
+def _below(found: Histogram, colour: str) -> Curve:
+    """Share of the values [%] below each edge."""
+    total, so_far, shares = sum(found.counts) or 1, 0, [0.0]
+    for count in found.counts:
+        so_far += count
+        shares.append(100.0 * so_far / total)
+    return Curve("", found.edges, shares, colour)

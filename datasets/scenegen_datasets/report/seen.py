@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from scenegen_datasets.audits.edges import EdgeMap
-from scenegen_datasets.audits.flow_quality import FlowQuality, FlowScore
+from scenegen_datasets.audits.flow_quality import ORDERED, FlowQuality, FlowScore
 from scenegen_datasets.audits.histogram import Histogram, even_edges, log_edges
-from scenegen_datasets.pages.charts import Bars, Curve, curves, histogram, key
+from scenegen_datasets.pages.charts import LARGE, Bars, Curve, curves, histogram, key
 from scenegen_datasets.pages.markup import Html, element
 from scenegen_datasets.pages.sheet import SERIES
 from scenegen_datasets.pages.tables import Column, number, table
@@ -40,7 +40,8 @@ def edges(found: EdgeMap) -> Html:
     ]
     how = note(
         "Depth and ids come from the ray through a pixel's centre and jump from one pixel to the next; heat is "
-        "gathered over the pixel and blurred by the lens. Read across silhouettes that stand alone and have 2 K of contrast."
+        "gathered over the pixel and blurred by the lens. Read across silhouettes that stand alone and have 2 K of "
+        "contrast."
     )
     return Html(
         said(found.verdict)
@@ -97,7 +98,7 @@ def flow(found: FlowQuality) -> Html:
         said(found.verdict)
         + table(columns, rows)
         + cards(
-            card("Order of near and far, frame by frame", legend, _orders(found.scores)),
+            card("Order of near and far, frames in which the truth shows it", legend, _orders(found.scores)),
             card("Error against the length of the true flow", legend, _errors(found.scores)),
             least_px=420,
         )
@@ -109,10 +110,12 @@ def _orders(scores: dict[str, Sequence[FlowScore]] | object) -> Html:
     assert isinstance(scores, dict)
     drawn = []
     for k, (name, found) in enumerate(scores.items()):
-        values = np.array([score.order for score in found if score.order is not None])
+        values = np.array([s.order for s in found if s.order is not None and (s.true_order or 0.0) > ORDERED])
         spread = Histogram.of(values, even_edges(-1.0, 1.0, 25))
         drawn.append(Bars(name, spread.edges, spread.counts, SERIES[k]))
-    return histogram(drawn, "Spearman's correlation of flow and 1/depth", mark=(0.0, "inverted below"))
+    return histogram(
+        drawn, "Spearman's correlation of flow and 1/depth", mark=(0.0, "inverted below"), frame=LARGE
+    )
 
 
 def _errors(scores: dict[str, Sequence[FlowScore]] | object) -> Html:

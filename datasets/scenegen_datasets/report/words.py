@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from scenegen_datasets.audits.histogram import Histogram, Spread
 from scenegen_datasets.audits.verdict import Verdict
+from scenegen_datasets.pages.axes import SUPERSCRIPT
 from scenegen_datasets.pages.charts import Bars
-from scenegen_datasets.pages.markup import Html, element, join
+from scenegen_datasets.pages.markup import Html, element
 from scenegen_datasets.pages.sheet import SERIES
 
 LEVELS = {"fine": ("good", "✓"), "note": ("note", "!"), "fault": ("bad", "✕"), "skipped": ("faint", "–")}
@@ -65,11 +66,18 @@ def bars(found: Histogram, name: str = "", colour: str = SERIES[0]) -> Bars:
 
 def figures(spread: Spread, digits: int = 3, unit: str = "") -> tuple[str, str, str, str]:
     """Median, 95 %, 99 % and number of values as cells."""
-    values = (spread.median, spread.high, spread.top)
-    shown = [("–" if value is None else f"{value:.{digits}g}{unit}") for value in values]
-    return shown[0], shown[1], shown[2], f"{spread.count:,}"
+    shown = [figure(value, digits) for value in (spread.median, spread.high, spread.top)]
+    median, high, top = (words + unit if words != "–" else words for words in shown)
+    return median, high, top, f"{spread.count:,}"
 
 
-def all_of(parts: list[Html]) -> Html:
-    """Several pieces as one."""
-    return join(parts)
+def figure(value: float | None, digits: int = 3) -> str:
+    """A number as people write it: 1,240 and 4.6 × 10⁻⁶."""
+    if value is None:
+        return "–"
+    if abs(value) >= 1000.0:
+        return f"{value:,.0f}"
+    if value == 0.0 or abs(value) >= 1e-3:
+        return f"{value:.{digits}g}"
+    mantissa, exponent = f"{value:.{digits - 1}e}".split("e")
+    return f"{mantissa} × 10{str(int(exponent)).translate(SUPERSCRIPT)}"
