@@ -15,6 +15,8 @@ COMMANDS = {
     "demo": "make a few pairs in a minute and show where the pictures are",
     "render": "make a dataset, resume one, or grow one",
     "preview": "draw contact sheet and animation of a dataset",
+    "report": "a dataset on one page: pictures, audits, provenance, cost",
+    "audit": "measure what a dataset is like",
     "view": "look at a dataset in a browser",
     "info": "what a dataset holds",
     "status": "how far a dataset is while it is being made",
