@@ -6,6 +6,7 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -61,9 +62,10 @@ def test_rows_are_held_against_an_answer_without_an_image() -> None:
     """Networks of 10 m on average, a row mean of 12 m, and one row that no image helps."""
     kinds = ("pooled", "painted", "pooled_aligned")
 
-    def scores(rmse_m: float) -> dict[str, dict[str, float]]:
+    def scores(rmse_m: float) -> dict[str, Any]:
         own = {"rmse_m": rmse_m, "rel": rmse_m / 30.0, "delta1": 0.5, "delta2": 0.7, "delta3": 0.8}
-        return dict.fromkeys(kinds, own)
+        near = {"from_m": 0.5, "below_m": 20.0, "scores": own}
+        return {**dict.fromkeys(kinds, own), "by_range": [near, {**near, "scores": None}]}
 
     runs = {row.key: [scores(rmse) for rmse in (9.9, 10.0, 10.1)] for row in ROWS}
     runs["proposed-0"] = [scores(rmse) for rmse in (14.9, 15.0, 15.1)]
@@ -77,6 +79,8 @@ def test_rows_are_held_against_an_answer_without_an_image() -> None:
     page = as_markdown(table)
     assert page.count("| row mean, no image |  | 12.00 | 0.400 |") == len(kinds)
     assert "| proposed, w_L1 = 0 | not held (-3.000) |" in page
+    assert "|  | RMSE [m], 0.5 to 20 m | Rel, 0.5 to 20 m |\n" in page
+    assert "| Pix2Pix, w_L1 = 100 | 10.00 ± 0.10 | 0.333 ± 0.003 |\n" in page
     assert '<td class="not">not held (-3.000)</td>' in as_html(table)
 
 

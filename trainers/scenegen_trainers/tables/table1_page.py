@@ -7,6 +7,7 @@ from dataclasses import asdict
 from html import escape
 from math import isfinite
 from pathlib import Path
+from statistics import fmean, stdev
 from typing import Any
 
 from scenegen.foundation.atomic import write_atomic
@@ -104,8 +105,30 @@ def _score_rows(table: Table1, kind: str) -> list[Cells]:
 
 
 def _cell(table: Table1, row: Row, name: str, digits: int, kind: str) -> str:
-    mean, spread = table.mean_and_spread(row.key, name, kind)
-    return f"{mean:.{digits}f}" + ("" if spread is None else f" ± {spread:.{digits}f}")
+    return _spread(table.values(row.key, name, kind), digits)
+
+
+def _spread(values: Sequence[float], digits: int) -> str:
+    return f"{fmean(values):.{digits}f}" + (f" ± {stdev(values):.{digits}f}" if len(values) > 1 else "")
+
+
+def _range_table(table: Table1) -> tuple[Cells, list[Cells]]:
+    """RMSE and Rel by true distance: head and rows. Ranges without a pixel are left out."""
+    judged = [(f"{r.method}, w_L1 = {r.w_l1:g}", table.runs[r.key]) for r in ROWS]
+    judged += [(f"{name}, no image", [scores]) for name, scores in table.baselines.items()]
+    some = [k for k, part in enumerate(judged[0][1][0]["by_range"]) if part["scores"]]
+    bounds = [judged[0][1][0]["by_range"][k] for k in some]
+    names = [f"{b['from_m']:g} to {b['below_m']:g} m" for b in bounds]
+    head = ["", *(f"{score}, {name}" for name in names for score in _HEADS[:2])]
+    rows: list[Cells] = []
+    for label, runs in judged:
+        cells = [
+            _spread([float(run["by_range"][k]["scores"][score]) for run in runs], digits)
+            for k in some
+            for score, digits in zip(NAMES[:2], _DIGITS[:2], strict=True)
+        ]
+        rows.append([label, *cells])
+    return head, rows
 
 
 def _relation_rows(found: Sequence[Found]) -> list[Cells]:
@@ -143,6 +166,7 @@ def as_markdown(table: Table1) -> str:
     for heading, kind in _SECTIONS:
         parts += [f"## {heading}"] if heading else []
         parts.append(_markdown(_SCORE_HEAD, _score_rows(table, kind)))
+    parts += ["## By true distance", _markdown(*_range_table(table))]
     for heading, found in _judgements(table):
         parts += [f"## {heading}", _markdown(("claim", *_HEADS), _relation_rows(found))]
     parts.append(VERDICTS)
@@ -167,6 +191,7 @@ def as_html(table: Table1) -> str:
     for heading, kind in _SECTIONS:
         parts += [f"<h2>{escape(heading)}</h2>"] if heading else []
         parts.append(_html(_SCORE_HEAD, _score_rows(table, kind)))
+    parts += ["<h2>By true distance</h2>", _html(*_range_table(table))]
     for heading, found in _judgements(table):
         parts += [f"<h2>{escape(heading)}</h2>", _html(("claim", *_HEADS), _relation_rows(found))]
     parts.append(f"<p>{escape(VERDICTS)}</p>")

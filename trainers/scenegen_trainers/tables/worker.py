@@ -60,6 +60,7 @@ class _Trivial:
                     "pooled": named(t.report.pooled),
                     "pooled_aligned": named(t.report.pooled_aligned),
                     "painted": named(t.painted.pooled),
+                    "by_range": report_json(t.report)["by_range"],
                 }
                 for name, t in found.items()
             }
