@@ -35,8 +35,8 @@ class ClipLines(Sequence[bytes]):
         self._files = DiskFiles(path.parent)
 
     @classmethod
-    def of(cls, path: Path, sha256: str) -> ClipLines:
-        """Find the lines of a file whose content must have this hash; holds a megabyte of it at a time.
+    def of(cls, path: Path, sha256: str, clips: int) -> ClipLines:
+        """Find the lines of a file that must have this hash and so many clips; holds a megabyte of it at a time.
 
         Raises
         ------
@@ -45,14 +45,17 @@ class ClipLines(Sequence[bytes]):
         """
         if path.is_symlink() or not path.is_file():
             raise DatasetError(f"{path}: missing")
-        found, ends, size = hashlib.sha256(), [], 0
+        found, ends, size, count = hashlib.sha256(), [], 0, 0
         with path.open("rb") as file:
             while size <= _MAX_BYTES and (chunk := file.read(_CHUNK)):
                 found.update(chunk)
                 ends.append(np.flatnonzero(np.frombuffer(chunk, np.uint8) == _NEWLINE) + (size + 1))
                 size += len(chunk)
+                count += len(ends[-1])
+                if count > clips:
+                    break
         lines = np.concatenate([np.zeros(0, np.int64), *ends])
-        if found.hexdigest() != sha256 or (lines[-1] if len(lines) else 0) != size:
+        if count != clips or found.hexdigest() != sha256 or (lines[-1] if len(lines) else 0) != size:
             raise DatasetError(f"{path}: damaged; run `scenegen verify`")
         return cls(path, lines)
 

@@ -9,11 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from scenegen.foundation.errors import CorruptFrameError
+from scenegen.foundation.errors import CorruptFrameError, DatasetError
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import Layer, max_member_bytes, member_field
 from scenegen_datasets.pixels import decode_member
 from scenegen_datasets.remote import Files, Root, files_at
+
+_MAX_SHARD_BYTES = 1 << 48
+"""Beyond any file; what an index says is bounded before the system is asked."""
 
 
 class ShardReader:
@@ -84,8 +87,8 @@ class ShardReader:
         names = [(member, member_field(member)) for member in members]
         limit = min(int(row["shard_size"]), max_member_bytes((int(row["height_px"]), int(row["width_px"]))))
         wanted = [(int(row[f"{name}_offset"]), int(row[f"{name}_size"])) for _, name in names]
-        for (member, _), (_, size) in zip(names, wanted, strict=True):
-            if size > limit:
+        for (member, _), (offset, size) in zip(names, wanted, strict=True):
+            if size > limit or offset > min(int(row["shard_size"]), _MAX_SHARD_BYTES) - size:
                 raise CorruptFrameError(
                     f"{_where(row, job, member)}: larger than its shard or its image allows"
                 )
@@ -93,6 +96,8 @@ class ShardReader:
             pieces = self._files.spans(job.shard, wanted)
         except OSError as error:
             raise CorruptFrameError(f"{job.shard}: {error.strerror or error}") from None
+        except DatasetError as error:  # names the shard
+            raise CorruptFrameError(str(error)) from None
         for (member, name), (_, size), data in zip(names, wanted, pieces, strict=True):
             if len(data) != size or zlib.crc32(data) != int(row[f"{name}_crc32"]):
                 raise CorruptFrameError(f"{_where(row, job, member)}: damaged; run `scenegen verify`")

@@ -94,7 +94,7 @@ def _finished(files: Files) -> Source:
     sums, frames = description["sums"], description["counts"]["frames"]
     index = files.kept(INDEX, sums[INDEX])
     rows = open_index(index, frames)
-    lines = ClipLines.of(files.kept(CLIPS, sums[CLIPS]), sums[CLIPS])
+    lines = ClipLines.of(files.kept(CLIPS, sums[CLIPS]), sums[CLIPS], description["counts"]["clips"])
     starts, heads = first_rows(index, frames, len(lines))
     layers = tuple(layer["name"] for layer in description["layers"])
     return Source(rows, layers, lines, starts, heads, description["content_id"])

@@ -8,6 +8,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from pathlib import Path
 
+from scenegen_datasets.inside import open_inside
 from scenegen_datasets.remote.files import Span
 from scenegen_datasets.seal import read_bounded
 
@@ -36,7 +37,7 @@ class DiskFiles:
         return read_bounded(self._root / path, max_bytes)
 
     def spans(self, path: str, wanted: Sequence[Span]) -> list[bytes]:
-        """Return pieces of a file; never through a symbolic link."""
+        """Return pieces of a plain file; never through a symbolic link."""
         file = self._opened(path)
         return [os.pread(file.descriptor, size, offset) for offset, size in wanted]
 
@@ -55,7 +56,7 @@ class DiskFiles:
             if file is None:
                 if len(self._open) >= _MAX_OPEN:
                     self._open.popitem(last=False)
-                file = self._open[path] = _Opened(self._root / path)
+                file = self._open[path] = _Opened(self._root, path)
             else:
                 self._open.move_to_end(path)
             return file
@@ -64,9 +65,9 @@ class DiskFiles:
 class _Opened:
     """A descriptor that closes with its last user, so that no thread ever reads from a number that was given away."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, root: Path, path: str) -> None:
         self.descriptor = -1
-        self.descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC)
+        self.descriptor = open_inside(root, path)
 
     def __del__(self) -> None:
         if self.descriptor >= 0:
