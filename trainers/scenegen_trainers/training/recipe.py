@@ -110,6 +110,7 @@ PROFILES: Mapping[str, Mapping[str, Any]] = {
     "small": {
         "pix2pix": {"width": 16, "judge_width": 16},
         "fastdepth": {"width": 0.5},
+        "litemono": {"width": 0.5},
         "training": {"steps": 4000, "batch": 4},
     },
     "paper": {"training": {"steps": 40_000, "batch": 4, "keep": 1000, "judge": 2000, "workers": 4}},
