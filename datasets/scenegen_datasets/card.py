@@ -13,16 +13,17 @@ _HUB_SPLITS = {"train": "train", "val": "validation", "test": "test"}
 _SIZES = ((1_000, "n<1K"), (10_000, "1K<n<10K"), (100_000, "10K<n<100K"), (1_000_000, "100K<n<1M"))
 
 _MOTIVATION = """\
-Depth from a thermal camera lets a drone fly at night. Recording thermal images with dense metric depth and flow outdoors
-needs a lidar, a calibrated rig and luck with the weather; simulators that paint objects in one grey each teach a network
-to read the paint. This dataset stands between the two: temperatures follow from a heat balance of material, hour, weather,
-orientation and shadow, and depth, flow and labels are exact."""
+Depth from a thermal camera lets a drone fly at night. Recording thermal images with dense metric depth and flow
+outdoors needs a lidar, a calibrated rig and luck with the weather; simulators that paint objects in one grey each
+teach a network to read the paint. This dataset stands between the two: temperatures follow from a heat balance of
+material, hour, weather, orientation and shadow, and depth, flow and labels are exact."""
 
 _PROCESS = """\
-Worlds are procedural. The temperature of every surface follows from a periodic heat balance (sun, sky, wind, neighbours,
-conduction); a ray tracer carries band radiance through the air to the camera; a microbolometer model (lens, lag, noise of
-pixels, rows and columns, 14-bit scale) makes counts of it. Nothing was recorded, collected from people, or labelled by
-hand. `recipe.lock.json` holds every setting and version: the same recipe gives the same data again."""
+Worlds are procedural. The temperature of every surface follows from a periodic heat balance (sun, sky, wind,
+neighbours, conduction); a ray tracer carries band radiance through the air to the camera; a microbolometer model
+(lens, lag, noise of pixels, rows and columns, 14-bit scale) makes counts of it. Nothing in the images was recorded,
+collected from people, or labelled by hand. `recipe.lock.json` holds every setting and version: the same recipe
+gives the same data again."""
 
 _USES = """\
 * depth from thermal images, alone or with the frame before; optical flow and its limits on low-contrast images

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from scenegen_datasets.licence import licence_of, licence_url
+
 _CONTEXT: dict[str, Any] = {
     "@language": "en",
     "@vocab": "https://schema.org/",
@@ -74,6 +76,9 @@ def croissant(description: Mapping[str, Any], sums: Mapping[str, str]) -> dict[s
         "description": f"{description['counts']['pairs']} pairs of synthetic thermal (LWIR) and metric depth images "
         "with optical flow, temperature and labels, seen from drones over procedural worlds.",
         "version": description["version"],
+        "license": licence_url(licence_of(description)),
+        "citeAs": f"{description['name']} {description['version']}: thermal and depth images made by thermal-scenegen, "
+        f"content {description['content_id'][:16]}",
         "identifier": description["content_id"],
         "keywords": ["thermal", "LWIR", "depth", "optical flow", "synthetic", "drone"],
         "distribution": [*(_shard(p, sums[p]) for p in shards), *(_member(m, shards) for m in members)],
