@@ -127,6 +127,8 @@ def _header(data: bytes) -> tuple[dict[str, bytes], int]:
         at += 4 + size
         if at >= len(data) or at > _MAX_HEADER_BYTES:
             raise CorruptFrameError("EXR header runs past the file")
+        if name.decode("latin-1") in attributes:
+            raise CorruptFrameError("EXR says one thing twice")  # the library may believe the other one
         attributes[name.decode("latin-1")] = data[at - size : at]
     return attributes, at + 1
 
@@ -142,5 +144,7 @@ def _channel_list(value: bytes) -> dict[str, np.dtype[Any]]:
         )
         if kind not in (0, 1, 2) or (x_step, y_step) != (1, 1):
             raise CorruptFrameError("EXR channel list is damaged")
+        if name.decode("latin-1") in found:
+            raise CorruptFrameError("EXR holds a channel twice")
         found[name.decode("latin-1")] = _PIXEL_TYPES[kind]
     return found

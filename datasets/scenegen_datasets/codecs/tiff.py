@@ -84,8 +84,11 @@ def _directory(data: bytes) -> dict[int, int]:
         raise CorruptFrameError("TIFF directory is outside the file")
     if data[end : end + 4] != b"\0\0\0\0":
         raise CorruptFrameError("TIFF of more than one page")
+    entries = list(_ENTRY.iter_unpack(data[at + 2 : end]))
+    if len({tag for tag, *_ in entries}) < count:
+        raise CorruptFrameError("TIFF says one thing twice")  # the library may believe the other one
     tags = {}
-    for tag, kind, number, value in _ENTRY.iter_unpack(data[at + 2 : end]):
+    for tag, kind, number, value in entries:
         if number == 1 and kind in _TYPE_BYTES:
             tags[tag] = value & (0xFFFFFFFF >> (32 - 8 * _TYPE_BYTES[kind]))
     return tags
