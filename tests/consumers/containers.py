@@ -1,0 +1,151 @@
+"""Readers of containers, each by the library that owns the format."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from consumers.pictures import _drives
+from consumers.seen import EXACT, Seen
+
+
+def unpack(root: Path) -> Iterator[Seen]:
+    """OpenCV for thermal and depth, OpenEXR for the rest."""
+    for home in _drives(root):
+        assert json.loads((home / "clip.json").read_text())["job"]["split"] == home.parent.name
+        for path in sorted(home.glob("*.thermal.png")):
+            stem = path.name.partition(".")[0]
+            facts = json.loads((home / f"{stem}.json").read_text())
+            truth, flow = (_channels(home / f"{stem}.{name}.exr") for name in ("truth", "flow"))
+            exact = {
+                "thermal": cv2.imread(str(path), cv2.IMREAD_UNCHANGED),
+                "depth": cv2.imread(str(home / f"{stem}.depth.tiff"), cv2.IMREAD_UNCHANGED),
+                "flow": np.stack([flow["u"], flow["v"]], axis=-1),
+                "radiance": truth["radiance"],
+                "temperature": truth["temperature"],
+                "instance": truth["instance"],
+            }
+            yield Seen(
+                facts["key"],
+                exact,
+                pose=np.array(facts["world_from_camera"]),
+                K=np.array(facts["K"]),
+                time_s=facts["time_s"],
+            )
+
+
+def _channels(path: Path) -> dict[str, np.ndarray]:
+    import OpenEXR
+
+    channels = OpenEXR.File(str(path), True, False).channels()
+    return {name: channel.pixels for name, channel in channels.items()}
+
+
+def exr(root: Path) -> Iterator[Seen]:
+    """OpenEXR's own module; header attributes for pose, camera and time."""
+    import OpenEXR
+
+    names = {"thermal": np.uint16, "semantic": np.uint8, "material": np.uint16, "instance": np.uint32}
+    for path in sorted(p for home in _drives(root) for p in home.glob("*.exr")):
+        file = OpenEXR.File(str(path), True, False)
+        header, pixels = file.header(), {n: c.pixels for n, c in file.channels().items()}
+        exact = {name: pixels[name].astype(kind) for name, kind in names.items()}
+        exact |= {"depth": pixels["Z"], "radiance": pixels["radiance"], "temperature": pixels["temperature"]}
+        exact["flow"] = np.stack([pixels["forward.u"], pixels["forward.v"]], axis=-1)
+        exact["covisible"] = pixels["forward.covisible"].astype(bool)
+        assert header["unit.Z"] == "m"
+        pose, K = (np.array(json.loads(header[name])) for name in ("world_from_camera", "K"))
+        yield Seen(header["key"], exact, pose=pose, K=K, time_s=float(header["time_s"]))
+
+
+def hf(root: Path) -> Iterator[Seen]:
+    """`datasets.load_dataset` on the directory, cached beside it."""
+    import datasets
+
+    loaded = datasets.load_dataset(str(root), cache_dir=str(root.parent / "hf-cache"))
+    for split in loaded.values():
+        pictures, arrays = split, split.with_format("numpy", columns=["flow", "world_from_camera", "K"])
+        for k in range(len(split)):
+            row, numbers = pictures[k], arrays[k]
+            exact = {
+                "thermal": np.array(row["thermal"], np.uint16),
+                "depth": np.array(row["depth"]),
+                "semantic": np.array(row["semantic"]),
+                "covisible": np.array(row["covisible"]) > 127,
+                "flow": np.asarray(numbers["flow"], np.float32),
+            }
+            assert row["is_pair"] == (row["frame"] > 0)
+            assert "wind_mps" in json.loads(row["weather"])
+            pose, K = (np.asarray(numbers[name], float) for name in ("world_from_camera", "K"))
+            yield Seen(row["key"], exact, pose=pose, K=K, time_s=row["time_s"])
+
+
+def zarr(root: Path) -> Iterator[Seen]:
+    """The zarr library, from the root of the store."""
+    import zarr as library
+
+    store = library.open_group(str(root / "dataset.zarr"), mode="r")
+    for split in sorted(store.group_keys()):
+        for name in store[split].attrs["clips"]:
+            yield from _stacked(name, store[f"{split}/{name}"])
+            assert store[f"{split}/{name}"].attrs["clip"]["job"]["split"] == split
+
+
+def hdf5(root: Path) -> Iterator[Seen]:
+    """h5py."""
+    import h5py
+
+    for path in sorted(p for split in ("train", "val", "test") for p in (root / split).glob("*.h5")):
+        with h5py.File(path) as file:
+            assert file["depth"].attrs["unit"] == "m"
+            assert json.loads(file.attrs["clip"])["job"]["split"] == path.parent.name
+            yield from _stacked(path.stem, file)
+
+
+def _stacked(name: str, arrays: object) -> Iterator[Seen]:
+    there = [layer for layer in EXACT if layer in arrays]  # type: ignore[operator]
+    for k in range(arrays["depth"].shape[0]):  # type: ignore[index]
+        exact = {layer: np.asarray(arrays[layer][k]) for layer in there}  # type: ignore[index]
+        pose, K, time_s = (np.asarray(arrays[n][k]) for n in ("world_from_camera", "K", "time_s"))  # type: ignore[index]
+        yield Seen(f"{name}-{k:04d}", exact, pose=pose, K=K, time_s=float(time_s))
+
+
+def rerun(root: Path) -> Iterator[Seen]:
+    """Rerun's reader of recordings: chunks of components by entity and timeline."""
+    from rerun.chunk import RrdReader
+
+    for path in sorted(p for home in ("train", "val", "test") for p in (root / home).glob("*.rrd")):
+        rows: dict[int, dict[str, object]] = {}
+        for chunk in RrdReader(str(path)).stream():
+            batch = chunk.to_record_batch()
+            if "frame" in batch.schema.names:
+                for row in batch.to_pylist():
+                    rows.setdefault(row["frame"], {}).update(
+                        {f"{chunk.entity_path}:{name}": value for name, value in row.items()}
+                    )
+        for frame, row in sorted(rows.items()):
+            yield _rerun_frame(f"{path.stem}-{frame:04d}", row)
+
+
+def _rerun_frame(key: str, row: dict[str, object]) -> Seen:
+    camera = "/world/camera"
+    kinds = {
+        "thermal": ("Image", np.uint16),
+        "depth": ("DepthImage", np.float32),
+        "temperature": ("Image", np.float32),
+    }
+    kinds["semantic"] = ("SegmentationImage", np.uint8)
+    exact = {}
+    for name, (kind, dtype) in kinds.items():
+        (form,) = row[f"{camera}/{name}:{kind}:format"]  # type: ignore[misc]
+        (data,) = row[f"{camera}/{name}:{kind}:buffer"]  # type: ignore[misc]
+        exact[name] = np.array(data, np.uint8).view(dtype).reshape(form["height"], form["width"])
+    pose = np.eye(4)
+    pose[:3, :3] = np.array(row[f"{camera}:Transform3D:mat3x3"], float).reshape(3, 3).T  # columns first
+    pose[:3, 3] = np.array(row[f"{camera}:Transform3D:translation"], float).ravel()
+    K = np.array(row[f"{camera}:Pinhole:image_from_camera"], float).reshape(3, 3).T
+    return Seen(key, exact, pose=pose, K=K, time_s=row[f"{camera}:time"].total_seconds())  # type: ignore[attr-defined]

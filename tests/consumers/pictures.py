@@ -1,0 +1,208 @@
+"""Readers of picture formats, written from the formats' own documentation and loaders, not from the exporter."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import cv2
+import numpy as np
+from PIL import Image
+
+from consumers.geometry import moved, quaternion_pose
+from consumers.seen import Seen
+
+SPLITS = ("train", "val", "test")
+
+
+def _gain(path: Path) -> dict[str, object]:
+    return dict(json.loads(path.read_text()))
+
+
+def _missing(values: np.ndarray, unit: float) -> np.ndarray:
+    """Depth of a 16-bit picture; zero means none."""
+    assert values.dtype == np.uint16
+    return np.where(values == 0, np.nan, values.astype(np.float64) * unit)
+
+
+def _drives(root: Path) -> Iterator[Path]:
+    for split in SPLITS:
+        yield from sorted((root / split).glob("*-*-*"))
+
+
+def kitti(root: Path) -> Iterator[Seen]:
+    """Depth: ``disp_read``/``depth_read`` of the development kits, flow: ``flow_read``, poses: odometry benchmark."""
+    for drive in _drives(root):
+        poses = np.loadtxt(drive / "poses.txt").reshape(-1, 3, 4)
+        times = np.loadtxt(drive / "times.txt")
+        lines = (drive / "calib_cam_to_cam.txt").read_text().splitlines()
+        calibration = dict(line.split(": ", 1) for line in lines)
+        P = np.array(calibration["P_rect_02"].split(), float).reshape(3, 4)
+        names = sorted(p.name for p in (drive / "image_02/data").iterdir())
+        assert len(names) == len(poses) == len(times)
+        for k, name in enumerate(names):
+            depth = np.array(Image.open(drive / "proj_depth/groundtruth/image_02" / name), np.uint16)
+            flows = [_kitti_flow(drive / folder / name) for folder in ("flow_occ", "flow_noc")]
+            yield Seen(
+                f"{drive.name}-{int(name[:-4]):04d}",
+                depth_m=_missing(depth, 1 / 256),
+                flow_px=flows[0],
+                flow_seen_px=flows[1],
+                grey=np.array(Image.open(drive / "image_02/data" / name).convert("RGB"))[..., 1],
+                gain=_gain(drive / "gain.json"),
+                pose_from_first=np.vstack([poses[k], [0, 0, 0, 1]]),
+                K=moved(P[:, :3], 0.5),
+                time_s=float(times[k]),
+            )
+
+
+def _kitti_flow(path: Path) -> np.ndarray | None:
+    if not path.exists():
+        return None
+    flow = cv2.imread(str(path), cv2.IMREAD_ANYDEPTH | cv2.IMREAD_COLOR)[:, :, ::-1].astype(np.float64)
+    return np.where(flow[..., 2:] > 0, (flow[..., :2] - 2**15) / 64.0, np.nan)
+
+
+def tartanair(root: Path) -> Iterator[Seen]:
+    """`read_decode_depth` and `read_decode_flow` of tartanairpy's page on modalities; NED poses."""
+    K = np.array(json.loads((root / "intrinsics.json").read_text())["K"])
+    environments = [
+        name for names in json.loads((root / "splits.json").read_text()).values() for name in names
+    ]
+    for home in (p for name in environments for p in sorted((root / name / "Data_easy").glob("P*"))):
+        poses = np.loadtxt(home / "pose_lcam_front.txt")
+        for k, pose in enumerate(poses):
+            name = f"{k:06d}_lcam_front"
+            bytes_ = cv2.imread(str(home / f"depth_lcam_front/{name}_depth.png"), cv2.IMREAD_UNCHANGED)
+            depth = np.squeeze(bytes_.view("<f4"), axis=-1)
+            flow = _tartan_flow(home / f"flow_lcam_front/{k:06d}_{k + 1:06d}_flow.png")
+            seg = cv2.imread(str(home / f"seg_lcam_front/{name}_seg.png"), cv2.IMREAD_UNCHANGED)
+            yield Seen(
+                f"{home.parent.parent.name}-{int(home.name[1:]):03d}-{k:04d}",
+                exact={"depth": np.where(depth == 1e5, np.float32(np.inf), depth), "semantic": seg},
+                flow_px=flow[0] if flow else None,
+                flow_seen_px=flow[1] if flow else None,
+                grey=cv2.imread(str(home / f"image_lcam_front/{name}.png"))[..., 0],
+                gain=_gain(home / "gain.json"),
+                pose=_from_ned(pose),
+                K=K,
+            )
+
+
+def _tartan_flow(path: Path) -> tuple[np.ndarray, np.ndarray] | None:
+    """Flow where it fits, and where the mask says that it is seen."""
+    if not path.exists():
+        return None
+    flow16 = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    flow = (flow16[:, :, :2].astype(np.float64) - 32768) / 64.0
+    mask = flow16[:, :, 2].astype(np.uint8)[..., None]
+    stored = (flow16[:, :, :2] > 0).any(axis=2, keepdims=True)
+    return np.where(stored, flow, np.nan), np.where(mask == 0, flow, np.nan)
+
+
+def _from_ned(row: np.ndarray) -> np.ndarray:
+    """A body (x forward, y right, z down) in a NED world as an OpenCV camera in an ENU world, axis by axis."""
+    ned = quaternion_pose(row[:3], row[3:])
+
+    def enu(v: np.ndarray) -> np.ndarray:
+        north, east, down = v
+        return np.array([east, north, -down])
+
+    pose = np.eye(4)
+    for column, axis in enumerate((ned[:3, 1], ned[:3, 2], ned[:3, 0])):  # right, down, forward
+        pose[:3, column] = enu(axis)
+    pose[:3, 3] = enu(ned[:3, 3])
+    return pose
+
+
+def pix2pix(root: Path, cap_m: float = 100.0) -> Iterator[Seen]:
+    """`AlignedDataset`: left half A, right half B, both RGB."""
+    for path in sorted(p for split in SPLITS for p in (root / split).glob("*.png")):
+        image = Image.open(path).convert("RGB")
+        half = image.size[0] // 2
+        a, b = (np.array(image.crop((x, 0, x + half, image.size[1])))[..., 0] for x in (0, half))
+        gain = _gain(root / f"gain/{path.stem[:-5]}.json")
+        yield Seen(path.stem, depth_m=b.astype(np.float64) / 255.0 * cap_m, grey=a, gain=gain)
+
+
+def ms2(root: Path) -> Iterator[Seen]:
+    """`DataLoader_MS2`: lists, calibration, left and right pictures, filtered depth / 256, odometry 4x4."""
+    names = [line[:-1] for split in SPLITS for line in (root / f"{split}_list.txt").open()]
+    tested = [line[:-1] for line in (root / "test_list.txt").open()]
+    halves = [line[:-1] for when in ("day", "night") for line in (root / f"test_{when}_list.txt").open()]
+    assert sorted(tested) == sorted(halves)
+    for name in names:
+        calibration = np.load(root / "sync_data" / name / "calib.npy", allow_pickle=True).item()
+        baseline = abs(calibration["T_thrR"][0].astype(np.float32)) * 0.001
+        assert baseline == 0.0 and np.array_equal(calibration["R_nir2thr"], np.eye(3))
+        lefts = sorted((root / "sync_data" / name / "thr/img_left").glob("*.png"))
+        rights = sorted((root / "sync_data" / name / "thr/img_right").glob("*.png"))
+        assert [p.name for p in lefts] == [p.name for p in rights]
+        for left in lefts:
+            depth = np.array(
+                Image.open(root / "proj_depth" / name / "thr/depth_filtered" / left.name), np.uint16
+            )
+            pose = np.genfromtxt(root / "odom" / name / "thr" / f"{left.stem}.txt").reshape(4, 4)
+            yield Seen(
+                f"{name}-{int(left.stem):04d}",
+                exact={"thermal": np.array(Image.open(left), np.uint16)},
+                depth_m=_missing(depth, 1 / 256),
+                pose_from_first=pose,
+                K=moved(calibration["K_thrL"], 0.5),
+            )
+
+
+def filelist(root: Path, kind: str = "kitti") -> Iterator[Seen]:
+    """Depth-Anything-V2's VKITTI2 and KITTI classes and ZoeDepth's `DataLoadPreprocess`, line by line."""
+    for split in SPLITS:
+        if kind == "zoe":
+            lines = (root / f"train_test_inputs/scenegen_{split}_files_with_gt.txt").read_text().splitlines()
+        else:
+            lines = (root / f"dataset/splits/{kind}/{split}.txt").read_text().splitlines()
+        for line in lines:
+            image, depth, *focal = line.split(" ")
+            values = cv2.imread(str(root / depth), cv2.IMREAD_UNCHANGED)
+            far = np.where(values == 65535, np.nan, values / 100.0)
+            yield Seen(
+                Path(image).stem,
+                depth_m=far if kind == "vkitti2" else _missing(values, 1 / 256),
+                grey=cv2.imread(str(root / image))[..., 2],
+                gain=_gain(root / f"gain/{Path(image).parent.name}.json"),
+                K=_focal(float(focal[0]), values.shape) if focal else None,
+            )
+
+
+def _focal(focal: float, shape: tuple[int, ...]) -> np.ndarray:
+    return np.array([[focal, 0, shape[1] / 2], [0, focal, shape[0] / 2], [0, 0, 1]])
+
+
+def monodepth2(root: Path) -> Iterator[Seen]:
+    """`KITTIDepthDataset` with ``--png``; `MonoDataset` scales K; `evaluate_depth` reads the ground truth."""
+    facts = json.loads((root / "splits/scenegen/intrinsics.json").read_text())
+    path = root / "splits/scenegen/gt_depths.npz"
+    truth = np.load(path)["data"] if path.exists() else []
+    tested = 0
+    for split in SPLITS:
+        for line in (root / f"splits/scenegen/{split}_files.txt").read_text().splitlines():
+            folder, frame, side = line.split()
+            assert side == "l"
+            for offset in (-1, 0, 1):
+                assert (root / folder / f"image_02/data/{int(frame) + offset:010d}.png").exists()
+            path = root / folder / f"proj_depth/groundtruth/image_02/{int(frame):010d}.png"
+            depth = np.array(Image.open(path)).astype(np.float32) / 256
+            if split == "test":
+                assert np.array_equal(truth[tested], depth)
+                tested += 1
+            K = np.array(facts["K"])
+            K[0, :] *= depth.shape[1]
+            K[1, :] *= depth.shape[0]
+            image = Image.open(root / folder / f"image_02/data/{int(frame):010d}.png").convert("RGB")
+            yield Seen(
+                f"{Path(folder).name}-{int(frame):04d}",
+                depth_m=np.where(depth == 0, np.nan, depth.astype(np.float64)),
+                grey=np.array(image)[..., 0],
+                gain=_gain(root / folder / "gain.json"),
+                K=moved(K[:3, :3], 0.5),
+            )
+    assert tested == len(truth)
