@@ -24,7 +24,9 @@ RUN_LOG, WRITER_LOCK = "run.log.jsonl", ".lock"
 FOLDERS = ("shards", "receipts", "preview")
 
 _DERIVED = (DATASET, MANIFEST, INDEX, CLIPS, CARD, CROISSANT)
-_OURS = (RECIPE, LOCK, *_DERIVED, RELEASES, RUN_LOG, WRITER_LOCK, *FOLDERS)
+OURS = (RECIPE, LOCK, *_DERIVED, RELEASES, RUN_LOG, WRITER_LOCK, *FOLDERS)
+"""Names directly below a dataset."""
+
 _MAX_LOCK_BYTES = 16 << 20
 
 
@@ -67,7 +69,7 @@ def create_or_open(
         write_atomic(root / LOCK, canonical.pretty(new))
 
 
-def check_output(root: Path, names: Collection[str] = _OURS, lock: str = LOCK, kind: str = "dataset") -> None:
+def check_output(root: Path, names: Collection[str] = OURS, lock: str = LOCK, kind: str = "dataset") -> None:
     """Refuse a directory that is not empty and not one of ours, and symbolic links under our names.
 
     Parameters

@@ -15,7 +15,7 @@ from scenegen_datasets.verify.clip import ClipCheck, check_clip
 from scenegen_datasets.verify.report import Finding, VerifyReport
 from scenegen_datasets.verify.tree import check_tree
 
-__all__ = ["Finding", "VerifyReport", "verify"]
+__all__ = ["ClipCheck", "Finding", "VerifyReport", "examine", "verify"]
 
 
 def verify(
@@ -48,6 +48,13 @@ def verify(
     DatasetError
         If its lock is damaged.
     """
+    return examine(root, jobs, quick, progress)[0]
+
+
+def examine(
+    root: Path, jobs: int = 1, quick: bool = False, progress: Callable[[int, int], None] | None = None
+) -> tuple[VerifyReport, tuple[ClipCheck, ...]]:
+    """Verify, and give what was found clip by clip as well; arguments and errors as `verify`."""
     read_lock(root)
     paths = receipt_paths(root)
     checks: list[ClipCheck] = []
@@ -56,13 +63,14 @@ def verify(
         if progress:
             progress(len(checks), len(paths))
     findings = [f for c in checks for f in c.findings] + list(check_tree(root, checks))
-    return VerifyReport(
+    report = VerifyReport(
         findings=tuple(sorted(set(findings))),
         clips=len(checks),
         frames=sum(c.frames for c in checks),
         bytes=sum(c.size for c in checks),
         quick=quick,
     )
+    return report, tuple(checks)
 
 
 def _checks(root: Path, paths: list[str], jobs: int, quick: bool) -> Iterator[ClipCheck]:

@@ -6,20 +6,20 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from scenegen.foundation.atomic import is_partial
 from scenegen.foundation.errors import DatasetError
 from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.content import content_id
 from scenegen_datasets.description import read_description
 from scenegen_datasets.index import ROW, open_index
-from scenegen_datasets.inside import MAX_DEPTH, sha256_inside, walk
+from scenegen_datasets.inside import sha256_inside
 from scenegen_datasets.lock import fingerprint_id, recipe_id
 from scenegen_datasets.manifest import read_manifest
 from scenegen_datasets.seal import read_bounded
 from scenegen_datasets.splits.faults import split_faults
-from scenegen_datasets.store import CLIPS, DATASET, INDEX, LOCK, MANIFEST, RUN_LOG, WRITER_LOCK, read_lock
+from scenegen_datasets.store import CLIPS, DATASET, INDEX, LOCK, MANIFEST, read_lock
 from scenegen_datasets.verify.clip import ClipCheck
 from scenegen_datasets.verify.report import Finding
+from scenegen_datasets.verify.strays import find_strays
 
 _MAX_CLIPS_BYTES = 256 << 20
 
@@ -30,8 +30,12 @@ def check_tree(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
     yield from _leaks(sound)
     lock = read_lock(root)
     yield from _lock(lock, sound)
-    files, odd = _found(root)
-    yield from odd
+    manifest, unread = _manifest(root)
+    mine = {path for c in sound for path in (c.receipt, c.job.shard if c.job else "")} | {
+        c.receipt for c in checks
+    }
+    files, strays = find_strays(root, mine | manifest.keys())
+    yield from (Finding(stray.path, stray.reason) for stray in strays)
     if DATASET not in files:
         yield Finding(DATASET, "missing: the dataset still grows; finish it with the same render command")
         return
@@ -42,7 +46,9 @@ def check_tree(root: Path, checks: Sequence[ClipCheck]) -> Iterator[Finding]:
     except DatasetError as error:
         yield Finding(DATASET, _bare(error))
     yield from (Finding(*fault) for fault in split_faults(lock, description, _records(sound)))
-    yield from _sums(root, files, sound, description)
+    if unread:
+        yield Finding(MANIFEST, unread)
+    yield from _sums(root, files, sound, description, None if unread else manifest)
     yield from _clips(root, sound)
     yield from _index(root, sound)
 
@@ -72,61 +78,36 @@ def _leaks(checks: Sequence[ClipCheck]) -> Iterator[Finding]:
             yield Finding(check.receipt, f"has the place in the plan of {ordinals[job.ordinal]}")
 
 
-def _found(root: Path) -> tuple[set[str], list[Finding]]:
-    """Return all plain files of the dataset, and what should not be in it at all."""
-    files: set[str] = set()
-    odd: list[Finding] = []
-    for entry in walk(root):
-        name = entry.path.rpartition("/")[2]
-        if beside(entry.path):
-            continue
-        if entry.kind == "file" and is_partial(name):
-            odd.append(Finding(entry.path, "left behind by a killed writer; the next render removes it"))
-        elif entry.kind == "file":
-            files.add(entry.path)
-        elif entry.kind != "folder":
-            what = "a symbolic link" if entry.kind == "link" else "a pipe, a socket or a device"
-            odd.append(Finding(entry.path, f"{what}; `scenegen clean` removes it"))
-        elif entry.path.count("/") >= MAX_DEPTH - 1:
-            odd.append(
-                Finding(entry.path, "a folder deeper than any of a dataset; `scenegen clean` removes it")
-            )
-    return files, odd
-
-
-def beside(path: str) -> bool:
-    """Whether a path belongs to what version control and hubs keep beside a dataset: hidden at its top."""
-    top, _, rest = path.partition("/")
-    return top.startswith(".") and (bool(rest) or not is_partial(top))
-
-
 def _records(checks: Sequence[ClipCheck]) -> Iterator[ClipRecord]:
     return (check.clip for check in checks if check.clip is not None)
 
 
+def _manifest(root: Path) -> tuple[dict[str, str], str]:
+    """The manifest, or nothing and why."""
+    try:
+        return read_manifest(root / MANIFEST), ""
+    except DatasetError as error:
+        return {}, _bare(error)
+
+
 def _sums(
-    root: Path, files: set[str], checks: Sequence[ClipCheck], description: Mapping[str, Any]
+    root: Path,
+    files: set[str],
+    checks: Sequence[ClipCheck],
+    description: Mapping[str, Any],
+    manifest: Mapping[str, str] | None,
 ) -> Iterator[Finding]:
     """Compare files and manifest; what proves itself (receipts, description) tells which of the two is wrong."""
-    try:
-        manifest: dict[str, str] | None = read_manifest(root / MANIFEST)
-    except DatasetError as error:
-        yield Finding(MANIFEST, _bare(error))
-        manifest = None
     listed = manifest or {}
     proven = _proven(root, checks, description)
-    shards = {c.job.shard for c in checks if c.job is not None}
     for path in sorted(proven.keys() | listed.keys()):
         expected = proven.get(path, listed.get(path))
         if path not in files:
             yield Finding(path, "missing")
-        elif path not in shards and not path.startswith("shards/") and sha256_inside(root, path) != expected:
+        elif not path.startswith("shards/") and sha256_inside(root, path) != expected:
             yield Finding(path, "SHA-256 differs from what was written")
         if manifest is not None and listed.get(path) != expected:
             yield Finding(MANIFEST, f"{'disagrees on' if path in listed else 'does not list'} {path}")
-    for path in sorted(files - proven.keys() - listed.keys() - {MANIFEST, DATASET, RUN_LOG, WRITER_LOCK}):
-        if not path.startswith(("preview/", RUN_LOG)):
-            yield Finding(path, "does not belong to the dataset (not in the manifest)")
 
 
 def _proven(root: Path, checks: Sequence[ClipCheck], description: Mapping[str, Any]) -> dict[str, str]:
