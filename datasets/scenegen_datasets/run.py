@@ -130,7 +130,7 @@ def run(job: Job, render: Mapping[str, str], told: Told) -> Outcome:
                 machine=machine(),
                 **lock,
             )
-            quarantined = _make(job, missing, fingerprint_id(lock["fingerprint"]), log, told)
+            quarantined = make_clips(job, missing, fingerprint_id(lock["fingerprint"]), log, told)
             told(
                 Progress(
                     0,
@@ -146,8 +146,10 @@ def run(job: Job, render: Mapping[str, str], told: Told) -> Outcome:
     return Outcome(info, tuple(quarantined.items()), len(missing) - len(quarantined))
 
 
-def _make(job: Job, missing: Sequence[ClipJob], fingerprint: str, log: RunLog, told: Told) -> dict[str, str]:
-    """Make clips in worker processes; returns those that could not be made."""
+def make_clips(
+    job: Job, missing: Sequence[ClipJob], fingerprint: str, log: RunLog, told: Told
+) -> dict[str, str]:
+    """Make clips of a job in worker processes, below its directory; returns those that could not be made, and why."""
     setup = {
         "recipe": job.recipe.model_dump(mode="json"),
         "root": str(job.root.resolve()),
