@@ -2,26 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.atomic import write_atomic
 from scenegen.foundation.canonical import pretty
-from scenegen_trainers.campaign.report import style
-from scenegen_trainers.campaign.report.charts import ends_bar, rate_bar
-from scenegen_trainers.campaign.report.ink import END_COLOUR, END_WORDS, PILOT_COLOUR, text
+from scenegen_datasets.pages.charts import key, stacked_bar
+from scenegen_datasets.pages.document import document
+from scenegen_datasets.pages.markup import Html, element, join
+from scenegen_datasets.pages.sheet import BAD, GOOD, NOTE, SERIES
+from scenegen_datasets.pages.tables import Column, number
+from scenegen_datasets.pages.tables import table as drawn
+from scenegen_trainers.campaign.report.ink import END_WORDS
 from scenegen_trainers.campaign.statistics import CONFIDENCE, Rate
 from scenegen_trainers.campaign.store import PAGE
-from scenegen_trainers.campaign.summary import rate_json
+from scenegen_trainers.campaign.summary import Line, rate_json
 from scenegen_trainers.tables import table2_text as words
 from scenegen_trainers.tables.table2 import BOUNDS, FLIGHTS_DIR, Table2
-from scenegen_trainers.tables.table2_paper import METHODS, PRINTED_AVERAGE, PUBLISHED, published_mean
+from scenegen_trainers.tables.table2_paper import (
+    METHODS,
+    PRINTED_AVERAGE,
+    PUBLISHED,
+    published_mean,
+    published_words,
+)
 
 STEM = "table2"
 PILOTS = (*METHODS, *BOUNDS)
-_GREY = "#8b94a3"
+
+_COLOUR = dict(zip(PILOTS, (SERIES[0], SERIES[1], SERIES[5], SERIES[5]), strict=True))
+_END_COLOUR = {"goal": GOOD, "collision": BAD, "timeout": NOTE, "pilot": SERIES[3]}
+_APART = {"lower": "good", "higher": "bad", "open": "faint"}
 
 
 def write_table2(table: Table2, out: Path) -> tuple[Path, ...]:
@@ -79,93 +92,93 @@ def _means(maps: Sequence[str]) -> dict[str, float | None]:
 
 def as_html(table: Table2) -> str:
     """One file; the maps of all paths lie beside it, in the campaign's own page."""
-    parts = [
-        f"<h1>{text(words.title(table))}</h1><p class=lead>{text(words.about(table))}</p>",
-        *(f"<p class=warning>{text(said)}</p>" for said in words.warnings(table)),
-        f"<h2>Collision rate</h2><table>{_head()}{''.join(_rows(table))}</table>",
-        f"<p class=small>{text(words.NOTE)}</p><p class=small>{text(words.AVERAGES)}</p>",
-        f"<h2>How flights ended</h2>{_key()}<table>{''.join(_ends(table))}</table>",
-        f'<p><a href="{FLIGHTS_DIR}/{PAGE}">All flights, world by world, with paths and crash sites</a></p>',
-    ]
-    return (
-        "<!doctype html><html lang=en><head><meta charset=utf-8>"
-        '<meta name=viewport content="width=device-width,initial-scale=1">'
-        f"<title>{text(words.title(table))}</title><style>{style.SHEET}{_SHEET}</style></head><body><main>"
-        f"{''.join(parts)}</main></body></html>\n"
+    warned = (element("p", said, class_="bad") for said in words.warnings(table))
+    heads = ("map", *METHODS, "proposed - conventional", *BOUNDS)
+    ends = (
+        "map",
+        "pilot",
+        Column("how flights ended", "wide"),
+        number("way gained"),
+        number("speed"),
+        "hit most",
+    )
+    link = element(
+        "a", "All flights, world by world, with paths and crash sites", href=f"{FLIGHTS_DIR}/{PAGE}"
+    )
+    return document(
+        words.title(table),
+        element("h1", words.title(table)),
+        element("p", words.about(table), class_="lead"),
+        *warned,
+        element("h2", "Collision rates"),
+        drawn(heads, _rows(table)),
+        element("p", words.NOTE, class_="small"),
+        element("p", words.AVERAGES, class_="small"),
+        element("h2", "How flights ended"),
+        key([(_END_COLOUR[kind], word) for kind, word in END_WORDS.items()]),
+        drawn(ends, [_end_row(map, pilot, line) for (map, pilot), line in table.lines.items()]),
+        element("p", link),
     )
 
 
-_SHEET = (
-    "p.small{white-space:normal;max-width:80ch}p.lead{max-width:100ch}p.warning{color:#ff9d9d}"
-    "td .paper{color:#8b94a3;font-size:12px;white-space:nowrap}tr.mean td{background:#161b24}"
-    ".lower{color:#4fc3a1}.higher{color:#ff5c5c}.open{color:#8b94a3}"
-)
-
-
-def _head() -> str:
-    heads = ("map", "conventional", "proposed", "proposed - conventional", "oracle", "blind")
-    return f"<tr>{''.join(f'<th>{head}</th>' for head in heads)}</tr>"
-
-
-def _rows(table: Table2) -> Iterator[str]:
-    for map in table.maps:
-        row = PUBLISHED.get(map)
-        theirs = ["" if row is None else f"paper {row.percent[method]:.2f} %" for method in METHODS]
-        yield _row(table, map, (map,), theirs, "")
+def _rows(table: Table2) -> list[list[object]]:
+    """One row per map, then the means; the paper's figures below ours."""
+    rows = [_row(table, map, (map,)) for map in table.maps]
     if len(table.maps) > 1:
-        theirs = [_paper_mean(method, table.maps) for method in METHODS]
-        yield _row(table, f"mean of all {len(table.maps)}", table.maps, theirs, "mean")
+        rows.append(_row(table, f"mean of all {len(table.maps)}", table.maps))
     if 1 < len(table.averaged) < len(table.maps):
-        theirs = [_paper_mean(method, table.averaged) for method in METHODS]
-        yield _row(table, "without city, as the paper averages", table.averaged, theirs, "mean")
+        rows.append(_row(table, "without city, as the paper averages", table.averaged))
+    return rows
 
 
-def _paper_mean(method: Any, maps: Sequence[str]) -> str:
-    mean = published_mean(method, maps)
-    return "" if mean is None else f"paper {mean:.2f} %"
-
-
-def _row(table: Table2, name: str, maps: Sequence[str], theirs: Sequence[str], kind: str) -> str:
-    methods = "".join(
-        _rate(table.rate(method, maps), table.mean(method, maps), PILOT_COLOUR[k], theirs[k])
-        for k, method in enumerate(METHODS)
-    )
-    bounds = "".join(_rate(table.rate(pilot, maps), table.mean(pilot, maps), _GREY, "") for pilot in BOUNDS)
+def _row(table: Table2, name: str, maps: Sequence[str]) -> list[object]:
+    theirs = _means(maps)
+    rates = [
+        _rate(table.rate(pilot, maps), table.mean(pilot, maps), _COLOUR[pilot], theirs.get(pilot))
+        for pilot in PILOTS
+    ]
     paired = table.paired(maps)
-    apart = (
-        f"<td class={words.verdict(paired)}>{text(words.difference(table, maps))}<br><span class=small>p "
-        f"{text(words.p_words(paired))}</span></td>"
+    apart = join(
+        [
+            element("span", words.difference(table, maps), class_=_APART[words.verdict(paired)]),
+            element("div", f"p {words.p_words(paired)}", class_="small"),
+        ]
     )
-    return f"<tr class='{kind}'><td>{text(name)}</td>{methods}{apart}{bounds}</tr>"
+    return [element("b", name), *rates[:2], apart, *rates[2:]]
 
 
-def _rate(rate: Rate, mean: float | None, colour: str, theirs: str) -> str:
+def _rate(rate: Rate, mean: float | None, colour: str, theirs: float | None) -> Html:
+    """Share, counts, a bar with its interval, and the paper's share."""
     if not rate.of or mean is None:
-        return "<td>-</td>"
-    return (
-        f"<td><b>{100 * mean:.1f} %</b> <span class=small>{rate.count}/{rate.of}; "
-        f"{100 * rate.low:.1f} to {100 * rate.high:.1f}</span>{rate_bar(rate, colour)}"
-        f"<span class=paper>{text(theirs)}</span></td>"
+        return Html("-")
+    counts = f" {rate.count}/{rate.of}; {100 * rate.low:.1f} to {100 * rate.high:.1f}"
+    paper = "" if theirs is None else element("div", f"paper {published_words(theirs)}", class_="small")
+    figure = element("b", f"{100 * mean:.1f} %")
+    return join([figure, element("span", counts, class_="small"), _interval_bar(rate, mean, colour), paper])
+
+
+def _interval_bar(rate: Rate, share: float, colour: str) -> Html:
+    """A share from 0 to 1 as a bar, its interval as a line across the bar's end."""
+    low, high = 300 * rate.low, 300 * rate.high
+    return Html(
+        '<svg viewBox="0 0 300 14" class="bar" preserveAspectRatio="none">'
+        '<rect width="300" height="14" fill="var(--bar)"/>'
+        f'<rect width="{300 * share:.1f}" height="14" fill="{colour}" opacity=".8"/>'
+        f'<rect x="{low:.1f}" y="5.5" width="{max(high - low, 0.5):.1f}" height="3" fill="var(--ink)" opacity=".75"/>'
+        "</svg>"
     )
 
 
-def _key() -> str:
-    entries = "".join(
-        f'<span><i style="background:{END_COLOUR[kind]}"></i>{text(word)}</span>'
-        for kind, word in END_WORDS.items()
-    )
-    return f"<div class=key>{entries}</div>"
-
-
-def _ends(table: Table2) -> Iterator[str]:
-    yield (
-        "<tr><th>map</th><th>pilot</th><th>ends</th><th class=number>way gained</th><th class=number>speed</th>"
-        "<th>hit most</th></tr>"
-    )
-    for (map, pilot), line in table.lines.items():
-        yield (
-            f"<tr><td>{text(map)}</td><td>{text(pilot)}</td><td class=wide>{ends_bar(line.ends)}</td>"
-            f"<td class=number>{words.spread_words(line.progress, 100.0, '%')}</td>"
-            f"<td class=number>{words.spread_words(line.speed_mps, 1.0, 'm/s')}</td>"
-            f"<td class=small>{text(words.hit_words(line))}</td></tr>"
-        )
+def _end_row(map: str, pilot: str, line: Line) -> list[object]:
+    parts = [
+        (rate.share if rate.of else 0.0, _END_COLOUR[kind], f"{END_WORDS[kind]}: {rate.count}")
+        for kind, rate in line.ends.items()
+    ]
+    return [
+        map,
+        pilot,
+        stacked_bar(parts),
+        words.spread_words(line.progress, 100.0, "%"),
+        words.spread_words(line.speed_mps, 1.0, "m/s"),
+        element("span", words.hit_words(line), class_="small"),
+    ]

@@ -74,3 +74,8 @@ def published_mean(method: Method, maps: Iterable[str]) -> float | None:
     if not names or not all(name in PUBLISHED for name in names):
         return None
     return fmean(PUBLISHED[name].percent[method] for name in names)
+
+
+def published_words(percent: float) -> str:
+    """A rate as the paper prints them: two digits, halves rounded up."""
+    return f"{percent + 1e-9:.2f} %"

@@ -11,10 +11,10 @@ from scenegen_trainers.tables.table2 import BOUNDS, Table2
 from scenegen_trainers.tables.table2_paper import (
     LEFT_OUT,
     METHODS,
-    PRINTED_AVERAGE,
     PUBLISHED,
     Method,
     published_mean,
+    published_words,
 )
 
 Cells = Sequence[str]
@@ -89,11 +89,7 @@ def main_rows(table: Table2) -> list[Cells]:
     if whole:
         rows.append(_row(table, whole, table.maps, [_mean(method, table.maps) for method in METHODS]))
     if whole and 1 < len(table.averaged) < len(table.maps):
-        printed = (
-            [f"{PRINTED_AVERAGE[m]:.2f} %" for m in METHODS] if set(table.averaged) < set(PUBLISHED) else []
-        )
-        full = set(table.averaged) == set(PUBLISHED) - {LEFT_OUT}
-        theirs = printed if full else [_mean(method, table.averaged) for method in METHODS]
+        theirs = [_mean(method, table.averaged) for method in METHODS]
         rows.append(_row(table, f"without {LEFT_OUT}", table.averaged, theirs))
     return rows
 
@@ -139,12 +135,12 @@ def _published(map: str, method: Method) -> str:
     if row is None:
         return "-"
     rate = row.rate(method)
-    return f"{row.percent[method]:.2f} % ({100 * rate.low:.1f}-{100 * rate.high:.1f})"
+    return f"{published_words(row.percent[method])} ({100 * rate.low:.1f}-{100 * rate.high:.1f})"
 
 
 def _mean(method: Method, maps: Sequence[str]) -> str:
     mean = published_mean(method, maps)
-    return "-" if mean is None else f"{mean:.2f} %"
+    return "-" if mean is None else published_words(mean)
 
 
 ENDS_HEAD = (
