@@ -22,6 +22,8 @@ COMMANDS = {
     "status": "how far a dataset is while it is being made",
     "verify": "check every byte, array and rule of a dataset",
     "release": "verify a dataset and give it a version",
+    "diff": "compare two datasets, and say which version the change needs",
+    "merge": "join several datasets into one",
     "export": "write a dataset in a format other tools read",
     "fly": "fly missions in closed loop and count collisions",
     "train": "teach a depth network on a dataset",

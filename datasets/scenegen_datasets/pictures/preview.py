@@ -7,11 +7,11 @@ from pathlib import Path
 
 from scenegen.foundation.atomic import make_directories, write_atomic
 from scenegen.foundation.errors import InputError
-from scenegen_datasets.layers import check_layers
 from scenegen_datasets.loader import PairDataset
 from scenegen_datasets.pictures.animation import animate
 from scenegen_datasets.pictures.sheet import contact_sheet
 from scenegen_datasets.pictures.shot import shot_of
+from scenegen_datasets.source import open_source
 from scenegen_datasets.store import read_lock
 from scenegen_render.sensor.scale import CountScale
 
@@ -48,13 +48,13 @@ def write_preview(root: Path) -> tuple[Path, Path]:
 def draw_preview(root: Path) -> tuple[bytes, bytes]:
     """Contact sheet (PNG) and flight (animated WebP) of a dataset."""
     recipe = read_lock(root)["recipe"]
-    stored = check_layers(recipe["layers"])
+    stored = open_source(root, allow_partial=True).layers
     pairs = PairDataset(root, layers=[name for name in _SHOWN if name in stored], allow_partial=True)
     if len(pairs) == 0:
         raise InputError(f"{root} holds no pair yet; let a render finish its first clip")
     low_K, high_K = recipe["sensor"]["scale_K"]
     scale = CountScale(low_K, high_K, tuple(recipe["camera"]["band_um"]), recipe["sensor"]["linear_in"])
-    per_clip = int(recipe["pairs_per_clip"])
+    per_clip = int(pairs.clip_ends[0])
     clips = max(len(pairs) // per_clip, 1)
     rows = min(MAX_ROWS, max(clips, min(2, len(pairs))))
     chosen = [int((k + 0.5) * len(pairs) / rows) for k in range(rows)]

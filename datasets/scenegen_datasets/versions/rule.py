@@ -101,10 +101,10 @@ def _about(bump: Bump, clips: Sequence[str], one: str, many: str) -> Iterator[Ch
 
 def _description(old: State, new: State) -> Iterator[Change]:
     """What tells of samples without changing one."""
-    keys = list(differing_keys(old.recipe, new.recipe))
+    keys = [line.partition(": ")[0] for line in differing_keys(old.recipe, new.recipe)]
     if keys:
         more = f" and {len(keys) - _NAMED} more" if len(keys) > _NAMED else ""
-        yield Change(Bump.PATCH, f"recipe: {'; '.join(keys[:_NAMED])}{more}")
+        yield Change(Bump.PATCH, f"the recipe has other values for {', '.join(keys[:_NAMED])}{more}")
     if old.scene_semantics != new.scene_semantics:
         yield Change(
             Bump.PATCH, f"scene semantics {old.scene_semantics} -> {new.scene_semantics}, of the recipe"
