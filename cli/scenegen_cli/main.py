@@ -25,6 +25,7 @@ COMMANDS = {
     "diff": "compare two datasets, and say which version the change needs",
     "merge": "join several datasets into one",
     "export": "write a dataset in a format other tools read",
+    "push": "copy a dataset to a Hub or any storage",
     "fly": "fly missions in closed loop and count collisions",
     "train": "teach a depth network on a dataset",
     "evaluate": "judge a trained network",

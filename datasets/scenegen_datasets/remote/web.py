@@ -146,38 +146,47 @@ class WebFiles:
         except ScenegenError:
             raise
         except Exception as error:
-            raise self._unreachable(path, error) from None
+            raise unreachable(f"{self._url}/{path}", error) from None
 
     def _ask(self, path: str, question: Callable[[Any, str], Value]) -> Value:
-        """Put a question to the file system, three times before giving up.
-
-        Raises
-        ------
-        FileNotFoundError
-            If there is no such file.
-        DatasetError
-            If there is no answer; every file system has errors of its own, so any of them means that.
-        """
+        """Put a question to the file system; errors as `tried`."""
         if self._process != os.getpid():
             self._connect()  # connections do not survive a fork
-        for wait_s in (*_WAITS_S, None):
-            try:
-                return question(self._fs, f"{self._root}/{path}")
-            except FileNotFoundError:
-                raise
-            except Exception as error:
-                if wait_s is None:
-                    raise self._unreachable(path, error) from None
-                time.sleep(wait_s)
-        raise AssertionError("the last attempt returns or raises")
-
-    def _unreachable(self, path: str, error: Exception) -> DatasetError:
-        reason = " ".join(str(error).split())[:200] or type(error).__name__
-        return DatasetError(f"{self._url}/{path}: cannot be read: {reason}")
+        return tried(lambda: question(self._fs, f"{self._root}/{path}"), f"{self._url}/{path}")
 
     def _connect(self) -> None:
         self._fs, self._root = connected(self._url, self._options)
         self._process = os.getpid()
+
+
+def tried(question: Callable[[], Value], where: str) -> Value:
+    """Ask a file system, three times before giving up.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    DatasetError
+        If there is no answer; every file system has errors of its own, so any of them means that.
+    """
+    for wait_s in (*_WAITS_S, None):
+        try:
+            return question()
+        except (FileNotFoundError, ScenegenError):
+            raise
+        except Exception as error:
+            if wait_s is None:
+                raise unreachable(where, error) from None
+            time.sleep(wait_s)
+    raise AssertionError("the last attempt returns or raises")
+
+
+def unreachable(where: str, error: Exception) -> DatasetError:
+    """What an error of a file system means to a user."""
+    reason = " ".join(str(error).split())[:200] or type(error).__name__
+    return DatasetError(
+        f"{where}: cannot be reached: {reason}; try again later, or check the URL and your access"
+    )
 
 
 def connected(url: str, options: Mapping[str, Any]) -> tuple[Any, str]:

@@ -154,7 +154,7 @@ def test_what_cannot_be_read_is_told_in_one_line(dataset: Path, tmp_path: Path) 
     with served.serve(dataset, ranges=False) as place, pytest.raises(InputError, match="range requests"):
         PairDataset(place.url)[0]
     gone = place.url
-    with pytest.raises(DatasetError, match="cannot be read"):
+    with pytest.raises(DatasetError, match="cannot be reached"):
         PairDataset(gone)
     (dataset / "dataset.json").unlink()
     with served.serve(dataset) as place:
