@@ -59,19 +59,24 @@ def landing(now: Still, next: Still, K: Float64[np.ndarray, "3 3"]) -> Landing:
 def between(
     image: Float32[np.ndarray, "rows columns *channels"], place: Float[np.ndarray, "rows columns 2"]
 ) -> Float32[np.ndarray, "rows columns *channels"]:
-    """Read an image bilinearly at places (u, v); NaN outside the outermost pixel centres."""
-    at = np.asarray(place - 0.5, np.float32)
-    return np.asarray(
-        cv2.remap(
-            image,
-            np.ascontiguousarray(at[..., 0]),
-            np.ascontiguousarray(at[..., 1]),
-            cv2.INTER_LINEAR,
-            borderMode=cv2.BORDER_CONSTANT,
-            borderValue=(float("nan"),) * 4,
-        ),
-        np.float32,
+    """Read an image bilinearly at places (u, v); NaN outside the outermost pixel centres.
+
+    Written out because `cv2.remap` rounds places to 1/32 px, which is more than what is to be measured.
+    """
+    rows, columns = image.shape[:2]
+    u, v = np.asarray(place[..., 0] - 0.5, np.float64), np.asarray(place[..., 1] - 0.5, np.float64)
+    inside = (u >= 0.0) & (u <= columns - 1.0) & (v >= 0.0) & (v <= rows - 1.0)
+    u, v = np.where(inside, u, 0.0), np.where(inside, v, 0.0)
+    left, above = (
+        np.minimum(np.floor(x), most).astype(np.int64) for x, most in ((u, columns - 2), (v, rows - 2))
     )
+    extra = (...,) + (None,) * (image.ndim - 2)
+    right, down = (u - left)[extra].astype(np.float32), (v - above)[extra].astype(np.float32)
+    upper = (1 - right) * image[above, left] + right * image[above, left + 1]
+    lower = (1 - right) * image[above + 1, left] + right * image[above + 1, left + 1]
+    found = (1 - down) * upper + down * lower
+    found[~inside] = np.nan
+    return np.asarray(found, np.float32)
 
 
 def even_ground(

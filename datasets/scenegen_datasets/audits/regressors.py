@@ -10,6 +10,7 @@ from jaxtyping import Float64, Int64
 
 Features = Float64[np.ndarray, "samples features"]
 Values = Float64[np.ndarray, "samples"]
+Edges = Float64[np.ndarray, "_"]
 
 Regressor = Callable[[Features], Values]
 """Answers for features it has not been fitted on."""
@@ -94,7 +95,7 @@ class Sum:
     """
 
     base: Curve
-    edges: tuple[Values, Values]
+    edges: tuple[Edges, Edges]
     columns: tuple[int, int]
     more: Float64[np.ndarray, "first second"]
 
@@ -115,13 +116,13 @@ class Sum:
         return np.asarray(self.base(features) + self.more.ravel()[cell])
 
 
-def quantile_edges(values: Values, bins: int) -> Values:
+def quantile_edges(values: Values, bins: int) -> Edges:
     """Inner edges of bins of equal population."""
     return np.asarray(np.quantile(values, np.arange(1, bins) / bins))
 
 
 def _cell(
-    features: Features, columns: tuple[int, int], edges: tuple[Values, Values], bins: int
+    features: Features, columns: tuple[int, int], edges: tuple[Edges, Edges], bins: int
 ) -> Int64[np.ndarray, "samples"]:
     first, second = (
         np.searchsorted(edge, features[:, column], side="right")

@@ -51,11 +51,10 @@ def write_report(root: Path, out: Path | None = None, watch: Watch | None = None
     InputError
         If there is no dataset, nothing in it yet, or the file cannot be written.
     """
-    page, audits = compose(root, watch)
     path = out or root / REPORT
-    make_directories(root, "preview") if out is None else make_directories(
-        path.parent.parent, path.parent.name
-    )
+    open_source(root, allow_partial=True)  # nothing is made for what is no dataset
+    make_directories(path.parent.parent, path.parent.name)
+    page, audits = compose(root, watch)
     data = page.encode()
     write_atomic(path, data)
     return Report(path, len(data), audits)
