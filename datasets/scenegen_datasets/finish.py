@@ -39,6 +39,7 @@ from scenegen_datasets.versions.state import ClipMark, State
 
 PREVIEW = "preview"
 
+
 class _Tally:
     """Receipts pass through once; what is needed of each is kept, its frames are not."""
 
