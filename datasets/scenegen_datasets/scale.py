@@ -5,7 +5,30 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from scenegen_render.sensor.scale import CountScale
+from scenegen_render.sensor.knobs import SensorKnobs
+from scenegen_render.sensor.scale import MAX_COUNT, CountScale
+
+
+def sensor_facts(knobs: SensorKnobs, band_um: tuple[float, float]) -> dict[str, float | int | str]:
+    """What a clip's record says of its camera: the scale of the counts, and the noise.
+
+    Parameters
+    ----------
+    knobs : SensorKnobs
+    band_um : (float, float)
+        Spectral band [um].
+    """
+    low, high = CountScale.of(knobs, band_um).ends
+    return {
+        "low_radiance": low,
+        "high_radiance": high,
+        "low_K": knobs.scale_K[0],
+        "high_K": knobs.scale_K[1],
+        "linear_in": knobs.linear_in,
+        "counts": MAX_COUNT + 1,
+        "netd_mk": knobs.netd_mk,
+        "time_constant_ms": knobs.time_constant_ms,
+    }
 
 
 def scale_of(facts: Mapping[str, Any]) -> CountScale:

@@ -20,14 +20,15 @@ from scenegen_datasets.commit import ShardWriter
 from scenegen_datasets.encode import FrameMeta, encode_frame
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.recipe import Recipe
+from scenegen_datasets.scale import sensor_facts
 from scenegen_datasets.splits.draw import draw_conditions
 from scenegen_datasets.stage import Stage, set_stage
 from scenegen_datasets.stopwatch import Stopwatch
 from scenegen_flythrough.fly import fly
 from scenegen_flythrough.trajectory import Trajectory
 from scenegen_render.bake import bake
+from scenegen_render.exposure.closer import look_closer
 from scenegen_render.scene import release_memory
-from scenegen_render.sensor.scale import MAX_COUNT, CountScale
 from scenegen_render.sensor.sense import Microbolometer
 from scenegen_render.trace.lit import Lit
 from scenegen_render.trace.tracer import Tracer
@@ -71,16 +72,19 @@ class Studio:
             weather, hour = draw_conditions(
                 self._recipe.climate, self._held_out, stage.exposure.season, self._recipe.seed, job
             )
-        with watch("solve"):
-            state = stage.heat.solve(weather, hour)
-        with watch("bake"):
-            irradiance = bake(
-                stage.loaded, stage.exposure, state, self._camera.band_um, self._recipe.exposure
-            )
         clock = self._clock(path)
         with watch("fly"):
             rng = stream(self._recipe.seed, *path, "flight")
             flight = fly(stage.world, self._recipe.flight, job.frames, rng, stage.airspace, clock)
+        with watch("look closer"):
+            rng, frames = stream(self._recipe.seed, *path, "closer look"), flight.world_from_camera[1:-1]
+            exposure = look_closer(
+                stage.loaded, stage.exposure, self._camera, frames, rng, self._recipe.exposure
+            )
+        with watch("solve"):
+            state = stage.heat.seeing(exposure).solve(weather, hour)
+        with watch("bake"):
+            irradiance = bake(stage.loaded, exposure, state, self._camera.band_um)
         world_s = clock.at(flight.time_s)
         with watch("light"):
             cast = self._tracer.cast(stage.world, flight.world_from_camera, world_s)
@@ -146,8 +150,7 @@ class Studio:
                 return shard.commit(record, fingerprint=self._fingerprint).size
 
     def _record(self, job: ClipJob, stage: Stage, state: ThermalState, flight: Trajectory) -> ClipRecord:
-        season, knobs = state.season, self._recipe.sensor
-        low, high = CountScale.of(knobs, self._camera.band_um).ends
+        season = state.season
         towards_sun = sun_direction(season, np.array([state.hour]))[0]
         return ClipRecord(
             job=job,
@@ -161,16 +164,7 @@ class Studio:
             height_px=self._camera.height_px,
             K=tuple((float(a), float(b), float(c)) for a, b, c in self._camera.matrix),
             band_um=self._camera.band_um,
-            sensor={
-                "low_radiance": low,
-                "high_radiance": high,
-                "low_K": knobs.scale_K[0],
-                "high_K": knobs.scale_K[1],
-                "linear_in": knobs.linear_in,
-                "counts": MAX_COUNT + 1,
-                "netd_mk": knobs.netd_mk,
-                "time_constant_ms": knobs.time_constant_ms,
-            },
+            sensor=sensor_facts(self._recipe.sensor, self._camera.band_um),
             speed_mps=flight.speed_mps,
             spacing_m=self._recipe.flight.spacing_m,
             clearance_m=flight.clearance_m,
