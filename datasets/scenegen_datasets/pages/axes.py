@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from scenegen_datasets.pages.markup import text
@@ -107,11 +108,14 @@ class Frame:
 
     def foot(self, scale: Scale, words: str) -> str:
         """Line, ticks and words of the axis below."""
+        return self.marked_foot([(scale(v), tick_words(v, scale.log)) for v in scale.ticks(6)], words)
+
+    def marked_foot(self, marks: Sequence[tuple[float, str]], words: str) -> str:
+        """The same with ticks of one's own: (place [px], words)."""
         y = self.height - self.bottom
         ticks = "".join(
-            f'<path class="grid" d="M{scale(v):.1f} {y}v4"/>'
-            f'<text class="x" x="{scale(v):.1f}" y="{y + 16}">{text(tick_words(v, scale.log))}</text>'
-            for v in scale.ticks(6)
+            f'<path class="grid" d="M{x:.1f} {y}v4"/><text class="x" x="{x:.1f}" y="{y + 16}">{text(tick)}</text>'
+            for x, tick in marks
         )
         middle = (self.left + self.width - self.right) / 2
         return (

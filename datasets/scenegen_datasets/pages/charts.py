@@ -194,6 +194,17 @@ def share_bar(share: float, colour: str = SERIES[0], most: float = 1.0) -> Html:
     )
 
 
+def interval_bar(share: float, low: float, high: float, colour: str = SERIES[0]) -> Html:
+    """A share from 0 to 1 as a bar on its track, its interval as a line across the bar's end."""
+    left, width = 300 * low, max(300 * (high - low), 0.5)
+    return Html(
+        '<svg viewBox="0 0 300 14" class="bar" preserveAspectRatio="none">'
+        '<rect width="300" height="14" fill="var(--bar)"/>'
+        f'<rect width="{300 * share:.1f}" height="14" fill="{colour}" opacity=".85"/>'
+        f'<rect x="{left:.1f}" y="5.5" width="{width:.1f}" height="3" fill="var(--ink)" opacity=".75"/></svg>'
+    )
+
+
 def stacked_bar(parts: Sequence[tuple[float, str, str]]) -> Html:
     """Shares side by side: (share, colour, words under the pointer)."""
     x, drawn = 0.0, []

@@ -1,31 +1,21 @@
-"""Colours and small pieces all parts of the page share."""
+"""Colours and words all parts of the page share."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from html import escape
 
+from scenegen_datasets.pages.sheet import BAD, GOOD, NOTE, SERIES
 from scenegen_trainers.campaign.statistics import Rate
 
-END_COLOUR: Mapping[str, str] = {
-    "goal": "#4fc3a1",
-    "collision": "#ff5c5c",
-    "timeout": "#e8b04a",
-    "pilot": "#b18cf0",
-}
+END_COLOUR: Mapping[str, str] = {"goal": GOOD, "collision": BAD, "timeout": NOTE, "pilot": "var(--violet)"}
 END_WORDS: Mapping[str, str] = {
     "goal": "reached the goal",
     "collision": "collided",
     "timeout": "ran out of time",
     "pilot": "pilot failed",
 }
-PILOT_COLOUR = ("#7db7ff", "#ffb35c", "#4fc3a1", "#b18cf0")
+PILOT_COLOUR = SERIES
 """Of the first pilot, the second, ..."""
-
-
-def text(words: object) -> str:
-    """Words safe between tags and in attributes."""
-    return escape(str(words), quote=True)
 
 
 def percent(rate: Rate, digits: int = 1) -> str:

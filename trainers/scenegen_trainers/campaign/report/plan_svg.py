@@ -8,15 +8,16 @@ from collections.abc import Sequence
 import numpy as np
 from shapely.geometry import LineString
 
+from scenegen_datasets.pages.markup import Html, text
 from scenegen_trainers.campaign.record import FlightRecord
-from scenegen_trainers.campaign.report.ink import END_COLOUR, END_WORDS, text
+from scenegen_trainers.campaign.report.ink import END_COLOUR, END_WORDS
 from scenegen_trainers.campaign.report.plan_view import SIDE_PX, Frame
 
 _SIMPLER_PX = 0.5
 _ORDER = ("goal", "timeout", "pilot", "collision")  # crashes are drawn last, on top
 
 
-def plan_svg(picture_id: str, frame: Frame, flights: Sequence[FlightRecord]) -> str:
+def plan_svg(picture_id: str, frame: Frame, flights: Sequence[FlightRecord]) -> Html:
     """Draw flights over the picture that is defined once on the page under an id.
 
     Parameters
@@ -28,7 +29,7 @@ def plan_svg(picture_id: str, frame: Frame, flights: Sequence[FlightRecord]) -> 
     """
     drawn = sorted(flights, key=lambda flight: _ORDER.index(flight.kind))
     parts = [_flight(frame, flight) for flight in drawn]
-    return (
+    return Html(
         f'<svg viewBox="0 0 {SIDE_PX} {SIDE_PX}" class="plan"><use href="#{picture_id}"/>'
         f"{''.join(parts)}{_scale_bar(frame)}</svg>"
     )
