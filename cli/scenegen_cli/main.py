@@ -21,6 +21,8 @@ COMMANDS = {
     "info": "what a dataset holds",
     "status": "how far a dataset is while it is being made",
     "verify": "check every byte, array and rule of a dataset",
+    "repair": "bring a damaged dataset back to the bytes it had",
+    "clean": "remove from a dataset what is no part of it",
     "release": "verify a dataset and give it a version",
     "diff": "compare two datasets, and say which version the change needs",
     "merge": "join several datasets into one",

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from scenegen_cli.console import say, say_json, size
+from scenegen.foundation.errors import InputError
+from scenegen_cli.console import note, say, say_json, size
 from scenegen_cli.parse import HelpShown, parse
+
+if TYPE_CHECKING:
+    from scenegen_datasets.verify.rerender import Rerendered
 
 SHOWN = 20
 
@@ -26,6 +30,10 @@ class Verify:
     """Directory of the dataset."""
     quick: bool = False
     """Sizes and metadata only."""
+    rerender: int = 0
+    """So many random frames are rendered again, from the lock alone, and compared."""
+    seed: int = 0
+    """Draws those frames."""
     jobs: int = 0
     """Processes; 0 is one per CPU."""
     json: bool = False
@@ -42,15 +50,34 @@ def run(arguments: Sequence[str]) -> int:
     from scenegen_cli.progress import Meter
     from scenegen_datasets.verify import verify
 
+    if not 0 <= command.rerender <= 10**6 or command.seed < 0:
+        raise InputError("--rerender takes 0 to 1,000,000 frames, and --seed nothing below 0")
+    workers = processes(command.jobs)
     with Meter(quiet=command.json) as meter:
-        report = verify(command.dataset, processes(command.jobs), command.quick, meter.verified)
+        report = verify(command.dataset, workers, command.quick, meter.verified)
+        again = None
+        if command.rerender and report.ok:
+            from scenegen_datasets.verify.rerender import rerender
+
+            again = rerender(command.dataset, command.rerender, workers, command.seed, meter.frames)
+    findings = report.findings if again is None else again.findings
     if command.json:
-        say_json({**asdict(report), "ok": report.ok})
-        return 0 if report.ok else 1
-    for finding in report.findings[:SHOWN]:
+        more = {"rerendered": None if again is None else asdict(again)} if command.rerender else {}
+        say_json({**asdict(report), "ok": not findings, **more})
+        return 1 if findings else 0
+    for finding in findings[:SHOWN]:
         say(f"{finding.file}: {finding.reason}")
-    if len(report.findings) > SHOWN:
-        say(f"... and {len(report.findings) - SHOWN} more (--json lists all)")
-    what = "ok" if report.ok else f"{len(report.findings)} findings"
-    say(f"{what}: {report.clips:,} clips, {report.frames:,} frames, {size(report.bytes)}")
-    return 0 if report.ok else 1
+    if len(findings) > SHOWN:
+        say(f"... and {len(findings) - SHOWN} more (--json lists all)")
+    what = f"{len(findings)} findings" if findings else "ok"
+    say(f"{what}: {report.clips:,} clips, {report.frames:,} frames, {size(report.bytes)}{_again(again)}")
+    if command.rerender and again is None:
+        note("nothing was rendered again, because of what was found; `scenegen repair` puts it right")
+    return 1 if findings else 0
+
+
+def _again(again: Rerendered | None) -> str:
+    if again is None:
+        return ""
+    software = "the same software" if again.same_software else "other software"
+    return f"; {len(again.frames)} frames rendered again by {software}, {again.identical} of them identical"

@@ -1,0 +1,70 @@
+"""``scenegen repair``: bring a damaged dataset back to the bytes it had."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import tyro
+
+from scenegen_cli.console import note, say, say_json
+from scenegen_cli.parse import HelpShown, parse
+
+if TYPE_CHECKING:
+    from scenegen_datasets.repair.repair import Repaired
+
+SHOWN = 20
+
+
+@dataclass(frozen=True)
+class Repair:
+    """Verify a dataset and put right what is wrong: render broken or missing clips again, derive the rest anew.
+
+    What is sound is not touched. Exits with 1 if something is still wrong.
+    """
+
+    dataset: Annotated[Path, tyro.conf.Positional]
+    """Directory of the dataset."""
+    jobs: int = 0
+    """Processes; 0 is one per CPU."""
+    json: bool = False
+    """Report as JSON."""
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run the subcommand; returns the exit code."""
+    try:
+        command = parse(Repair, "repair", arguments)
+    except HelpShown:
+        return 0
+    from scenegen_cli.making import processes
+    from scenegen_cli.progress import Meter
+    from scenegen_datasets.repair.repair import repair
+
+    with Meter(quiet=command.json) as meter:
+        done = repair(command.dataset, processes(command.jobs), meter.frames, meter.verified)
+    if command.json:
+        say_json({**asdict(done), "ok": done.after.ok})
+    else:
+        _tell(done)
+    return 0 if done.after.ok else 1
+
+
+def _tell(done: Repaired) -> None:
+    if done.before.ok:
+        healed = f"put right: {', '.join(done.healed)}" if done.healed else "nothing to repair"
+        say(f"{healed}: {done.after.clips:,} clips, {done.after.frames:,} frames are sound")
+        return
+    for finding in done.before.findings[:SHOWN]:
+        note(f"was: {finding}")
+    if done.rewritten:
+        note("recipe.yaml was lost: it holds the recipe with every default now, not what was asked")
+    for clip, reason in done.failed:
+        note(f"not repaired: {clip}: {reason}")
+    for finding in done.after.findings[:SHOWN]:
+        note(f"still: {finding}")
+    state = "sound again" if done.after.ok else f"{len(done.after.findings)} findings are left"
+    made = f", {len(done.remade)} clips rendered again" if done.remade else ""
+    say(f"{state}: {len(done.before.findings)} findings before{made}")

@@ -1,0 +1,1 @@
+"""Bring a damaged dataset back to the bytes it had."""

@@ -1,0 +1,115 @@
+"""Make clips of a dataset again, from its lock alone, by the path on which they were made first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from scenegen.foundation.errors import InputError
+from scenegen.foundation.strict_yaml import read_mapping
+from scenegen_datasets.job import ClipJob
+from scenegen_datasets.lock import VOLATILE_KEYS, fingerprint, recipe_id
+from scenegen_datasets.probe import render_fingerprint
+from scenegen_datasets.recipe import SCENE_SEMANTICS, Recipe, resolve_recipe
+from scenegen_datasets.render_job import Job
+from scenegen_datasets.resolve import Source
+from scenegen_datasets.run import Progress, make_clips
+from scenegen_datasets.run_log import RunLog
+from scenegen_datasets.store import LOCK, RECIPE
+
+Told = Callable[[Progress], None]
+
+
+def recipe_of(root: Path, lock: Mapping[str, Any]) -> Recipe:
+    """The recipe a dataset was made with; own scenes and recordings are found where ``recipe.yaml`` says.
+
+    Raises
+    ------
+    InputError
+        If this version of scenegen would make other samples of it, or a file it needs is not there.
+    """
+    if lock.get("parts"):
+        raise InputError(f"{root} is merged from other datasets: repair those, and merge them again")
+    if lock.get("scene_semantics") != SCENE_SEMANTICS:
+        raise InputError(
+            f"{root} was made when this recipe meant other scenes (version {lock.get('scene_semantics')}, this "
+            f"scenegen makes {SCENE_SEMANTICS}); install the scenegen that made it (see {LOCK}, 'software')"
+        )
+    plain = {key: value for key, value in lock["recipe"].items() if key not in VOLATILE_KEYS}
+    try:
+        recipe = Recipe.model_validate(plain)
+    except (ValidationError, InputError) as error:
+        raise InputError(
+            f"{root / LOCK}: not a recipe of this scenegen: {str(error).splitlines()[0]}"
+        ) from None
+    if _needs_files(recipe):
+        asked = resolve_recipe([Source(str(root / RECIPE), read_mapping(root / RECIPE))])
+        recipe = recipe.model_copy(update={"scenes": asked.scenes, "flight": asked.flight})
+    if recipe_id(recipe.canonical(), SCENE_SEMANTICS) != lock["recipe_id"]:
+        raise InputError(
+            f"{root}: this scenegen reads another recipe out of {LOCK} than the one that was rendered; install the "
+            "scenegen that made it (see 'software' there)"
+        )
+    return recipe
+
+
+def plan_of(root: Path, lock: Mapping[str, Any], recipe: Recipe, processes: int = 1) -> Job:
+    """The job that made a dataset; its `clips` are the plan.
+
+    Raises
+    ------
+    InputError
+        If the lock does not say how many pairs there are to be.
+    """
+    pairs = lock["recipe"].get("pairs")
+    if type(pairs) is not int or not 1 <= pairs <= 10**8:
+        raise InputError(
+            f"{root / LOCK}: does not say how many pairs the dataset has; restore it from a copy"
+        )
+    return Job(recipe=recipe, pairs=pairs, root=root, asked={}, processes=processes)
+
+
+def fingerprint_here() -> dict[str, str]:
+    """Fingerprint of what would render on this machine now.
+
+    Raises
+    ------
+    BackendError
+        If the renderer cannot start.
+    """
+    return fingerprint(render_fingerprint())
+
+
+def remake(
+    job: Job, clips: Sequence[ClipJob], fingerprint: str, log_root: Path, told: Told
+) -> dict[str, str]:
+    """Make clips of a plan again, below the job's directory; shards and receipts lie there as in a dataset.
+
+    Parameters
+    ----------
+    job : Job
+        Whose `root` is an existing directory: not that of the dataset.
+    clips : sequence of ClipJob
+    fingerprint : str
+        Id of the render fingerprint, for the receipts.
+    log_root : Path
+        Directory of the log of costs.
+    told : callable
+        Hears of progress.
+
+    Returns
+    -------
+    dict
+        Clips that could not be made, and why.
+    """
+    with RunLog(log_root) as log:
+        log.write("remake", clips=[clip.name for clip in clips], fingerprint=fingerprint)
+        return make_clips(job, clips, fingerprint, log, told)
+
+
+def _needs_files(recipe: Recipe) -> bool:
+    recorded = "recorded" in recipe.flight.styles and not recipe.flight.recorded.file
+    return recorded or any(not scene.file for name, scene in recipe.scenes.items() if name in recipe.map)
