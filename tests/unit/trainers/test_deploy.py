@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,13 @@ import torch
 from scenegen.foundation.errors import InputError
 from scenegen_cli.main import main
 from scenegen_render.camera import Camera
+from scenegen_trainers.deploy.budget import untrained
 from scenegen_trainers.deploy.cost import cost_of, onnx_session
 from scenegen_trainers.deploy.graph import onnx_graph, takes_counts
 from scenegen_trainers.models.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
 from scenegen_trainers.models.network import DepthNetwork
 from scenegen_trainers.pilots.onnx import OnnxDepth
+from scenegen_trainers.training.recipe import MODELS
 
 CAMERA = {"width_px": 48, "height_px": 32, "hfov_deg": 90.0}
 
@@ -99,3 +102,45 @@ def test_cost_counts_multiplications(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "pix2pix" in capsys.readouterr().out
     pilot = OnnxDepth(tmp_path / "model.onnx", Camera.from_fov(48, 32, 90.0))
     assert pilot.name == "model"
+
+
+def test_a_budget_needs_no_training(capsys: pytest.CaptureFixture[str]) -> None:
+    """Weights of the paper's generator, layer by layer: 4x4 kernels, two numbers a normalised channel."""
+    widths = [64, 128, 256, 512, 512, 512, 512]
+    down = 16 * sum(a * b for a, b in zip([1, *widths], widths, strict=False)) + widths[0] + widths[-1]
+    up = 16 * (widths[6] * widths[5] + sum(2 * widths[k] * widths[k - 1] for k in range(5, 0, -1)))
+    paint = 16 * 2 * widths[0] + 1
+    normalised = 2 * sum(widths[1:6]) + 2 * sum(widths[k - 1] for k in range(6, 0, -1))
+    made = untrained("pix2pix-flow", "paper", 128, 128)
+    assert sum(p.numel() for p in made.network.model.parameters()) == down + up + paint + normalised
+
+    assert main(["budget", "--profile", "ci", "--size", "64x32", "--repeats", "1", "--json"]) == 0
+    entries = {entry["model"]: entry for entry in json.loads(capsys.readouterr().out)}
+    assert list(entries) == list(MODELS)
+    assert {name for name, entry in entries.items() if not entry["from_counts"]} == {"pix2pix-flow"}
+    for entry in entries.values():
+        cost = entry["cost"]
+        assert (entry["width_px"], entry["height_px"], cost["threads"]) == (64, 32, 1)
+        assert entry["blind_m"] == pytest.approx(22.2e-3 * (cost["input_ms"] + cost["onnx_ms"]))
+        assert cost["difference_m"] < 0.2
+    arguments = ["budget", "--profile", "ci", "--size", "32x32", "--repeats", "1", "--markdown"]
+    assert main(arguments) == 0
+    lines = capsys.readouterr().out.strip().splitlines()
+    assert lines[0].startswith("| network | frame | weights |") and len(lines) == 2 + len(MODELS)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--profile", "smal"], "perhaps you meant 'small'"),
+        (["--size", "8x8"], "--size 8x8: sides of 16"),
+        (["--threads", "0"], "at least 1"),
+        (["none.pt"], "none.pt: no such file"),
+    ],
+)
+def test_a_budget_that_cannot_be_made_is_one_line(
+    arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["budget", *arguments]) == 2
+    (line,) = capsys.readouterr().err.strip().splitlines()
+    assert said in line

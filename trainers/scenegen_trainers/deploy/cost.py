@@ -75,25 +75,28 @@ def cost_of(checkpoint: Checkpoint, graph: bytes, threads: int = 1, repeats: int
     """
     network, rng = checkpoint.network, stream(0, "cost")
     rows, columns = int(checkpoint.camera["height_px"]), int(checkpoint.camera["width_px"])
-    torch.set_num_threads(threads)
-    session = onnx_session(graph, threads)
+    session, before_threads = onnx_session(graph, threads), torch.get_num_threads()
     inputs = example_inputs(checkpoint, rng)
     image = torch.zeros((1, network.inputs.channels, rows, columns))
     now, before = rng.integers(3000, 9000, (2, rows, columns)).astype(np.uint16)
     flow = np.zeros((rows, columns, 2), np.float32) if network.inputs.flow == "truth" else None
-    with torch.inference_mode():
-        return Cost(
-            parameters=sum(p.numel() for p in network.model.parameters()),
-            macs=_macs(network.model, image),
-            graph_bytes=len(graph),
-            threads=threads,
-            input_ms=_milliseconds(
-                lambda: compose(look(now, before, network.inputs, flow), network.inputs), repeats
-            ),
-            torch_ms=_milliseconds(lambda: network.metres(image), repeats),
-            onnx_ms=_milliseconds(lambda: session.run(None, inputs), repeats),
-            difference_m=_difference(checkpoint, session, inputs),
-        )
+    torch.set_num_threads(threads)
+    try:
+        with torch.inference_mode():
+            return Cost(
+                parameters=sum(p.numel() for p in network.model.parameters()),
+                macs=_macs(network.model, image),
+                graph_bytes=len(graph),
+                threads=threads,
+                input_ms=_milliseconds(
+                    lambda: compose(look(now, before, network.inputs, flow), network.inputs), repeats
+                ),
+                torch_ms=_milliseconds(lambda: network.metres(image), repeats),
+                onnx_ms=_milliseconds(lambda: session.run(None, inputs), repeats),
+                difference_m=_difference(checkpoint, session, inputs),
+            )
+    finally:
+        torch.set_num_threads(before_threads)
 
 
 def onnx_session(graph: bytes, threads: int) -> Any:
