@@ -34,6 +34,7 @@ COMMANDS = {
     "table1": "the paper's Table 1 on a dataset",
     "table2": "the paper's Table 2 in closed loop",
     "onnx": "export a trained network, and what it costs",
+    "budget": "what depth networks cost a drone",
     "doctor": "check this machine and say what to do",
     "maps": "list the kinds of worlds",
     "classes": "list the semantic classes",
