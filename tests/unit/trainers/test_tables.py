@@ -81,7 +81,7 @@ def test_rows_are_held_against_an_answer_without_an_image() -> None:
     assert "| proposed, w_L1 = 0 | not held (-3.000) |" in page
     assert "|  | RMSE [m], 0.5 to 20 m | Rel, 0.5 to 20 m |\n" in page
     assert "| Pix2Pix, w_L1 = 100 | 10.00 ± 0.10 | 0.333 ± 0.003 |\n" in page
-    assert '<td class="not">not held (-3.000)</td>' in as_html(table)
+    assert '<span class="bad">not held (-3.000)</span>' in as_html(table)
 
 
 @pytest.mark.slow

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import asdict
-from html import escape
 from math import isfinite
 from pathlib import Path
 from statistics import fmean, stdev
@@ -12,6 +11,10 @@ from typing import Any
 
 from scenegen.foundation.atomic import write_atomic
 from scenegen.foundation.canonical import pretty
+from scenegen_datasets.pages.document import document
+from scenegen_datasets.pages.markup import Html, element, text
+from scenegen_datasets.pages.tables import Column
+from scenegen_datasets.pages.tables import table as drawn
 from scenegen_trainers.evaluation.bootstrap import NAMES
 from scenegen_trainers.tables.order import Found
 from scenegen_trainers.tables.paper import ROWS, Row
@@ -177,41 +180,31 @@ def _markdown(head: Cells, rows: Sequence[Cells]) -> str:
     return "\n".join("| " + " | ".join(cells) + " |" for cells in (head, ["---"] * len(head), *rows))
 
 
-_STYLE = (
-    "body{font:15px/1.5 system-ui,sans-serif;max-width:76rem;margin:2rem auto;padding:0 1rem;color:#1d2229}"
-    "table{border-collapse:collapse;margin:.8rem 0}th,td{padding:.25rem .7rem;text-align:right;border-bottom:1px solid "
-    "#d9dde3;white-space:nowrap}th:first-child,td:first-child{text-align:left}.paper{color:#7a828e}"
-    ".held{color:#1b7f3b}.not{color:#b3261e}.open{color:#7a828e}"
-)
-
-
 def as_html(table: Table1) -> str:
     """One self-contained file."""
-    parts = [f"<h1>{escape(_title(table))}</h1>", f"<p>{escape(_about(table))}</p>", f"<p>{escape(NOTE)}</p>"]
+    parts = [
+        element("h1", _title(table)),
+        element("p", _about(table), class_="lead"),
+        element("p", NOTE),
+    ]
     for heading, kind in _SECTIONS:
-        parts += [f"<h2>{escape(heading)}</h2>"] if heading else []
+        parts += [element("h2", heading)] if heading else []
         parts.append(_html(_SCORE_HEAD, _score_rows(table, kind)))
-    parts += ["<h2>By true distance</h2>", _html(*_range_table(table))]
+    parts += [element("h2", "By true distance"), _html(*_range_table(table))]
     for heading, found in _judgements(table):
-        parts += [f"<h2>{escape(heading)}</h2>", _html(("claim", *_HEADS), _relation_rows(found))]
-    parts.append(f"<p>{escape(VERDICTS)}</p>")
-    head = f'<meta charset="utf-8"><title>{escape(_title(table))}</title><style>{_STYLE}</style>'
-    return f'<!doctype html><html lang="en"><head>{head}</head><body>{"".join(parts)}</body></html>\n'
+        parts += [element("h2", heading), _html(("claim", *_HEADS), _relation_rows(found))]
+    parts.append(element("p", VERDICTS, class_="small"))
+    return document(_title(table), *parts)
 
 
-def _html(head: Cells, rows: Sequence[Cells]) -> str:
-    def line(cells: Cells, tag: str) -> str:
-        return "".join(
-            f'<{tag} class="{_kind(cell, name)}">{escape(cell)}</{tag}>'
-            for cell, name in zip(cells, head, strict=True)
-        )
-
-    body = "".join(f"<tr>{line(cells, 'td')}</tr>" for cells in rows)
-    return f"<table><thead><tr>{line(head, 'th')}</tr></thead><tbody>{body}</tbody></table>"
+def _html(head: Cells, rows: Sequence[Cells]) -> Html:
+    columns = [Column(name, "name" if k == 0 else "number") for k, name in enumerate(head)]
+    return drawn(columns, [[_coloured(c, n) for c, n in zip(cells, head, strict=True)] for cells in rows])
 
 
-def _kind(cell: str, column: str) -> str:
+def _coloured(cell: str, column: str) -> Html:
+    """The paper's figures stand back; verdicts show what they say."""
     if column.startswith("paper's"):
-        return "paper"
-    word = cell.partition(" (")[0]
-    return {"held": "held", "not held": "not", "open": "open"}.get(word, "")
+        return element("span", cell, class_="faint")
+    kind = {"held": "good", "not held": "bad", "open": "faint"}.get(cell.partition(" (")[0])
+    return text(cell) if kind is None else element("span", cell, class_=kind)
