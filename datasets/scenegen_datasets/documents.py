@@ -25,7 +25,7 @@ _FRAME_STATISTICS = {
     "temperature_max_K": Maybe(_NUMBER),
 }
 
-_CLIP = {
+CLIP: dict[str, Any] = {
     "job": mapping,  # `ClipJob` checks itself
     **dict.fromkeys(
         ("latitude_deg", "hour", "sun_elevation_deg", "speed_mps", "spacing_m", "clearance_m"), _NUMBER
@@ -42,8 +42,10 @@ _CLIP = {
     "extra": mapping,
 }
 
+"""A clip record."""
+
 RECEIPT: dict[str, Any] = {
-    "clip": _CLIP,
+    "clip": CLIP,
     "layers": [_LINE],
     "shard": {"path": _LINE, "sha256": _SHA256, "size": _SIZE},
     "fingerprint": _LINE,
@@ -94,3 +96,40 @@ LOCK: dict[str, Any] = {
     "mixed_with": [Each(_LINE)],
 }
 """``recipe.lock.json``."""
+
+PARTS: list[Any] = [
+    {
+        "name": _LINE,
+        "version": _LINE,
+        "recipe_id": _SHA256,
+        "content_id": _SHA256,
+        "missing": [_LINE],
+        "worlds": Each([Numbers(2)]),
+        "recipe": mapping,
+        "scene_semantics": Whole(0, 10**6),
+    }
+]
+"""What the lock of a merged dataset says of its parts."""
+
+HISTORY: dict[str, Any] = {
+    "releases": [
+        {
+            "version": Text(r"[0-9]{1,9}\.[0-9]{1,9}\.[0-9]{1,9}"),
+            "recipe_id": _SHA256,
+            "content_id": _SHA256,
+            "counts": Each(_SIZE),
+            "changes": [_LINE],
+        }
+    ],
+    "last": {
+        "recipe_id": _SHA256,
+        "scene_semantics": Whole(0, 10**6),
+        "recipe": mapping,
+        "meaning": {"layers": mapping},
+        "names": Each(Each(_LINE)),
+        "storage": {"schema_version": Whole(1, 10**6), "layers": mapping},
+        "clips": Each({"split": _LINE, "facts": _LINE, "shard": _LINE, "layers": Each(_LINE)}),
+    },
+    "missing": [_LINE],
+}
+"""Body of ``releases.json``."""

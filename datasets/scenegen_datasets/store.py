@@ -115,7 +115,7 @@ def read_lock(root: Path) -> dict[str, Any]:
     if not (root / LOCK).exists():
         raise InputError(f"no dataset at {root} (it has no {LOCK})")
     value = canonical.parse(read_bounded(root / LOCK, _MAX_LOCK_BYTES), str(root / LOCK))
-    wrong = misshapen(value, documents.LOCK)
+    wrong = misshapen(value, documents.LOCK) or misshapen(value.get("parts", []), documents.PARTS, "parts")
     if wrong:
         raise DatasetError(f"{root / LOCK}: not a recipe lock ({wrong})")
     held: dict[str, Any] = value

@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from scenegen.foundation import canonical
-from scenegen.foundation.errors import DatasetError, InputError
+from scenegen.foundation.errors import DatasetError
+from scenegen_datasets.documents import HISTORY
 from scenegen_datasets.seal import check_seal, read_bounded, with_seal
+from scenegen_datasets.shape import misshapen
 from scenegen_datasets.store import RELEASES
 from scenegen_datasets.versions.rule import compare, needed
 from scenegen_datasets.versions.semver import FIRST, Bump, Version
@@ -90,14 +92,11 @@ def read_history(root: Path) -> History | None:
         raise DatasetError(
             f"{path}: schema {body.get('schema_version')}, this version reads {_SCHEMA}; update scenegen"
         )
-    try:
-        releases = tuple(_release(entry) for entry in body["releases"])
-        missing = tuple(str(name) for name in body["missing"])
-    except (KeyError, TypeError, ValueError, InputError) as error:
-        raise DatasetError(f"{path}: not a history of releases ({type(error).__name__}: {error})") from None
-    if not releases:
-        raise DatasetError(f"{path}: names no release")
-    return History(releases, State.from_dict(body["last"], str(path)), missing)
+    wrong = misshapen(body, HISTORY) or (None if body["releases"] else "it names no release")
+    if wrong:
+        raise DatasetError(f"{path}: not a history of releases ({wrong})")
+    releases = tuple(_release(entry) for entry in body["releases"])
+    return History(releases, State.from_dict(body["last"]), tuple(body["missing"]))
 
 
 def version_of(history: History | None, state: State) -> str:
@@ -113,7 +112,5 @@ def version_of(history: History | None, state: State) -> str:
 
 
 def _release(entry: Mapping[str, Any]) -> Release:
-    fields = {**entry, "counts": dict(entry["counts"]), "changes": tuple(map(str, entry["changes"]))}
-    release = Release(**fields)
-    Version.parse(release.version)
-    return release
+    text = {name: entry[name] for name in ("version", "recipe_id", "content_id")}
+    return Release(**text, counts=entry["counts"], changes=tuple(entry["changes"]))

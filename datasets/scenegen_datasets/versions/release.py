@@ -128,11 +128,9 @@ def _refuse_small_step(root: Path, last: Version, asked: Version, changes: tuple
     least = last.bumped(max(bump, Bump.PATCH))
     if last.step_to(asked) >= max(bump, Bump.PATCH):
         return
-    named = "; ".join(str(change) for change in changes if change.bump is bump) or "nothing changed"
-    size = f" is a {bump.name} change" if changes else ""
-    raise InputError(
-        f"{root}: {asked} says too little after {last}: {named}{size}; release it as {least} or above"
-    )
+    named = "; ".join(str(change) for change in changes if change.bump is bump)
+    why = f"what changed asks for a {bump.name} step ({named})" if changes else "nothing changed"
+    raise InputError(f"{root}: {asked} says too little after {last}: {why}; release it as {least} or above")
 
 
 def _write(

@@ -65,12 +65,17 @@ def _meaning(old: State, new: State) -> Iterator[Change]:
 
 
 def _names(kind: str, before: Mapping[str, str], after: Mapping[str, str]) -> Iterator[Change]:
-    for number in sorted(before.keys() | after.keys(), key=int):
+    for number in sorted(before.keys() | after.keys(), key=_in_order):
         old, new = before.get(number), after.get(number)
         if old is None:
             yield Change(Bump.MINOR, f"{kind} {number} '{new}' is new")
         elif old != new:
             yield Change(Bump.MAJOR, f"{kind} {number} was '{old}' and is " + (f"'{new}'" if new else "gone"))
+
+
+def _in_order(number: str) -> tuple[int, str]:
+    """Ids as numbers; what is none stands last."""
+    return (int(number), "") if number.isascii() and number.isdigit() else (2**31, number)
 
 
 def _clips(before: Mapping[str, ClipMark], after: Mapping[str, ClipMark]) -> Iterator[Change]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,8 @@ from scenegen_datasets.store import DATASET, read_lock
 
 _DIGITS = 32
 """Hexadecimal digits of a digest that are kept: 128 bits, for they tell accidents apart, not forgeries."""
+
+_MARK = ("split", "facts", "shard", "layers")
 
 Plain = dict[str, Any]
 
@@ -106,7 +108,7 @@ class State:
 
     def to_dict(self) -> Plain:
         """Return plain data; `from_dict` reads it back exactly."""
-        clips = {n: [c.split, c.facts, c.shard, dict(c.layers)] for n, c in self.clips.items()}
+        clips = {name: asdict(clip) for name, clip in self.clips.items()}
         return {
             "recipe_id": self.recipe_id,
             "scene_semantics": self.scene_semantics,
@@ -118,29 +120,11 @@ class State:
         }
 
     @classmethod
-    def from_dict(cls, data: Mapping[str, Any], where: str) -> State:
-        """Read what `to_dict` returned.
-
-        Raises
-        ------
-        DatasetError
-            If it is something else; `where` names the file.
-        """
-        try:
-            clips = {str(n): ClipMark(s, f, b, dict(x)) for n, (s, f, b, x) in data["clips"].items()}
-            fields = {k: data[k] for k in ("recipe", "meaning", "names", "storage")}
-            if not all(isinstance(value, dict) for value in fields.values()):
-                raise TypeError("not a mapping")
-            return cls(
-                recipe_id=str(data["recipe_id"]),
-                scene_semantics=int(data["scene_semantics"]),
-                clips=clips,
-                **fields,
-            )
-        except (KeyError, TypeError, ValueError, AttributeError) as error:
-            raise DatasetError(
-                f"{where}: not the state of a dataset ({type(error).__name__}: {error})"
-            ) from None
+    def from_dict(cls, data: Mapping[str, Any]) -> State:
+        """Read what `to_dict` returned, and `scenegen_datasets.documents.HISTORY` found in shape."""
+        clips = {name: ClipMark(**{k: clip[k] for k in _MARK}) for name, clip in data["clips"].items()}
+        names = ("recipe_id", "scene_semantics", "recipe", "meaning", "names", "storage")
+        return cls(**{name: data[name] for name in names}, clips=clips)
 
 
 def meaning_of(description: Mapping[str, Any]) -> Plain:

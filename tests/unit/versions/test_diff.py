@@ -143,7 +143,7 @@ def test_every_change_asks_for_its_bump_and_says_what_it_is(state: State, case: 
     found = compare(state, change(state))
     assert needed(found) is bump
     assert [str(one) for one in found] == ([words] if words else [])
-    assert State.from_dict(json.loads(json.dumps(state.to_dict())), "x") == state
+    assert State.from_dict(json.loads(json.dumps(state.to_dict()))) == state
 
 
 def test_the_largest_change_comes_first_and_decides(state: State) -> None:

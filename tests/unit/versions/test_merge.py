@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from scenegen.foundation.canonical import pretty
 from scenegen.foundation.errors import DatasetError, InputError
 from scenegen.foundation.lock import DirectoryLock
 from scenegen_cli.main import main
@@ -162,6 +163,17 @@ def test_a_merged_dataset_is_released_and_merged_again_but_not_grown(
     assert verify(out).ok
     with pytest.raises(InputError, match="merged from other datasets and does not grow"):
         create_or_open(out, "x", fakes.lock(99))
+
+
+@pytest.mark.parametrize("parts_told", [3, [3], [{}], [{"worlds": {"city": [["a", 1]]}}]], ids=str)
+def test_a_lock_whose_parts_make_no_sense_is_refused(
+    fakes: ModuleType, tmp_path: Path, parts_told: Any
+) -> None:
+    root = fakes.make(tmp_path / "dataset", 2)
+    path = root / "recipe.lock.json"
+    path.write_bytes(pretty({**json.loads(path.read_bytes()), "parts": parts_told}))
+    with pytest.raises(DatasetError, match=r"recipe.lock.json: not a recipe lock \(parts"):
+        verify(root)
 
 
 def test_collisions_are_refused_with_the_clip_and_where_it_is(

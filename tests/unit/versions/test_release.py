@@ -8,14 +8,17 @@ import subprocess
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
+from scenegen.foundation.canonical import pretty
 from scenegen.foundation.errors import DatasetError, InputError
 from scenegen.foundation.lock import DirectoryLock
 from scenegen_cli.main import main
 from scenegen_datasets.info import info
 from scenegen_datasets.loader import PairDataset
+from scenegen_datasets.seal import with_seal
 from scenegen_datasets.verify import verify
 from scenegen_datasets.versions.history import read_history
 from scenegen_datasets.versions.release import release
@@ -41,7 +44,8 @@ def test_a_release_and_growth_propose_a_minor_version(fakes: ModuleType, tmp_pat
         if path.startswith(("shards", "receipts")) or path == "releases.json":
             assert fakes.tree(root)[path] == data
     with pytest.raises(
-        InputError, match=r"1\.0\.1 says too little after 1\.0\.0: 2 clips are new: city-00001-000"
+        InputError,
+        match=r"1\.0\.1 says too little after 1\.0\.0: .*MINOR step .2 clips are new: city-00001-000",
     ):
         release(root, "1.0.1")
     second = release(root, "1.1.0")
@@ -81,7 +85,7 @@ def test_releasing_again_writes_nothing_and_finishing_again_keeps_the_version(
     [
         ("1.0.0", "says too little"),
         ("0.9.0", "says too little"),
-        ("1.0.7", r"2 clips are new.* is a MINOR change; release it as 1\.1\.0 or above"),
+        ("1.0.7", r"a MINOR step .2 clips are new.*; release it as 1\.1\.0 or above"),
         ("1.1", "is not MAJOR.MINOR.PATCH"),
         ("v1.1.0", "is not MAJOR.MINOR.PATCH"),
         ("1.01.0", "is not MAJOR.MINOR.PATCH"),
@@ -167,6 +171,26 @@ def test_a_damaged_history_is_said_in_one_line(
     assert "releases.json" in said and "\n" not in said and "a bug" not in said
 
 
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"releases": []},
+        {"releases": [{"version": "1.0.0"}]},
+        {"releases": 3},
+        {"last": {}},
+        {"last": None},
+        {"missing": [3]},
+    ],
+    ids=str,
+)
+def test_a_sealed_history_that_makes_no_sense_is_refused(grown: Path, change: dict[str, Any]) -> None:
+    path = grown / "releases.json"
+    body = {k: v for k, v in json.loads(path.read_bytes()).items() if k != "seal"}
+    path.write_bytes(pretty(with_seal({**body, **change})))
+    with pytest.raises(DatasetError, match=r"releases.json: not a history of releases"):
+        read_history(grown)
+
+
 def test_the_command_says_what_changed(grown: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["release", str(grown), "1.1.0", "--jobs", "1"]) == 0
     said = capsys.readouterr().out.splitlines()
@@ -183,7 +207,7 @@ def test_killed_at_any_step_a_release_is_old_or_unfinished_or_whole(
     release(clean, "1.1.0")
     whole = fakes.tree(clean)
     seen = set()
-    for step in range(1, 99, 2):
+    for step in range(1, 99, 4):
         root = Path(shutil.copytree(grown, tmp_path / f"killed{step}"))
         died = dies(step, lambda root=root: release(root, "1.1.0"))
         files = {name: data for name, data in fakes.tree(root).items() if not name.startswith(".")}
@@ -191,7 +215,7 @@ def test_killed_at_any_step_a_release_is_old_or_unfinished_or_whole(
             assert files == whole
             break
         seen.add(_kind(files, old, whole))
-        if step % 3:
+        if step % 3 == 0:
             continue
         after = Path(shutil.copytree(root, tmp_path / f"after{step}"))
         if step % 9 == 0:
