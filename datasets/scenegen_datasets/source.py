@@ -11,12 +11,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from scenegen.foundation.errors import InputError
+from scenegen.foundation import canonical
+from scenegen.foundation.errors import DatasetError, InputError
 from scenegen_datasets.clip_lines import ClipLines
 from scenegen_datasets.description import MAX_BYTES, description_of
+from scenegen_datasets.documents import CLIP
 from scenegen_datasets.index import ROW, Rows, first_rows, open_index, rows_of
 from scenegen_datasets.receipt import read_receipt, receipt_paths
 from scenegen_datasets.remote import Files, Root, files_at, plain_root
+from scenegen_datasets.shape import misshapen
 from scenegen_datasets.store import CLIPS, DATASET, INDEX, LOCK, finished
 
 
@@ -48,8 +51,17 @@ class Source:
     content_id: str = ""
 
     def facts(self, clip: int) -> Mapping[str, Any]:
-        """Facts of the clip at this position."""
-        facts: dict[str, Any] = json.loads(self.lines[clip])
+        """Facts of the clip at this position.
+
+        Raises
+        ------
+        DatasetError
+            If its line is not the record of a clip.
+        """
+        facts: dict[str, Any] = canonical.parse(self.lines[clip], CLIPS)
+        wrong = misshapen(facts, CLIP)
+        if wrong:
+            raise DatasetError(f"{CLIPS}: line {clip + 1} is not a clip ({wrong}); run `scenegen verify`")
         return facts
 
 

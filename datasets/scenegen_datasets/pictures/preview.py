@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from scenegen.foundation.atomic import make_directories, write_atomic
-from scenegen.foundation.errors import InputError
+from scenegen.foundation.errors import DatasetError, InputError
 from scenegen_datasets.loader import PairDataset
 from scenegen_datasets.pictures.animation import animate
 from scenegen_datasets.pictures.sheet import contact_sheet
 from scenegen_datasets.pictures.shot import shot_of
 from scenegen_datasets.source import open_source
-from scenegen_datasets.store import read_lock
+from scenegen_datasets.store import LOCK, read_lock
+from scenegen_render.camera_knobs import CameraKnobs
+from scenegen_render.sensor.knobs import SensorKnobs
 from scenegen_render.sensor.scale import CountScale
 
 FOLDER = "preview"
@@ -47,13 +51,12 @@ def write_preview(root: Path) -> tuple[Path, Path]:
 
 def draw_preview(root: Path) -> tuple[bytes, bytes]:
     """Contact sheet (PNG) and flight (animated WebP) of a dataset."""
-    recipe = read_lock(root)["recipe"]
+    lock = read_lock(root)
+    scale, maps = _asked(root, lock["recipe"])
     stored = open_source(root, allow_partial=True).layers
     pairs = PairDataset(root, layers=[name for name in _SHOWN if name in stored], allow_partial=True)
     if len(pairs) == 0:
         raise InputError(f"{root} holds no pair yet; let a render finish its first clip")
-    low_K, high_K = recipe["sensor"]["scale_K"]
-    scale = CountScale(low_K, high_K, tuple(recipe["camera"]["band_um"]), recipe["sensor"]["linear_in"])
     per_clip = int(pairs.clip_ends[0])
     clips = max(len(pairs) // per_clip, 1)
     rows = min(MAX_ROWS, max(clips, min(2, len(pairs))))
@@ -64,7 +67,20 @@ def draw_preview(root: Path) -> tuple[bytes, bytes]:
         shot_of(pairs[i], scale) for i in range(first, min(first + min(per_clip, MAX_FRAMES), len(pairs)))
     ]
     height, width = shots[0].depth.shape
-    subtitle = f"{len(pairs):,} pairs   {width} x {height} px   maps: {', '.join(recipe['map'])}"
+    subtitle = f"{len(pairs):,} pairs   {width} x {height} px   maps: {', '.join(maps)}"
     file = io.BytesIO()
-    contact_sheet(shots, read_lock(root)["name"], subtitle).save(file, "PNG", compress_level=9)
+    contact_sheet(shots, lock["name"], subtitle).save(file, "PNG", compress_level=9)
     return file.getvalue(), animate(flight)
+
+
+def _asked(root: Path, recipe: Mapping[str, Any]) -> tuple[CountScale, tuple[str, ...]]:
+    """Scale of the counts and names of the maps; a lock from elsewhere may hold anything."""
+    try:
+        scale = CountScale.of(
+            SensorKnobs.model_validate(recipe["sensor"]), CameraKnobs.model_validate(recipe["camera"]).band_um
+        )
+        return scale, tuple(str(name)[:40] for name in recipe["map"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise DatasetError(
+            f"{root / LOCK}: not the recipe of a dataset ({str(error).splitlines()[0]}); restore it from a copy"
+        ) from None
