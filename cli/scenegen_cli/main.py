@@ -27,6 +27,7 @@ COMMANDS = {
     "diff": "compare two datasets, and say which version the change needs",
     "merge": "join several datasets into one",
     "export": "write a dataset in a format other tools read",
+    "sense": "look at the stored radiance through another camera",
     "push": "copy a dataset to a Hub or any storage",
     "fly": "fly missions in closed loop and count collisions",
     "train": "teach a depth network on a dataset",

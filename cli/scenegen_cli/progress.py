@@ -70,6 +70,10 @@ class Meter:
         """Steps were audited."""
         self._show("auditing", done, total, f"step {done}/{total}")
 
+    def sensed(self, done: int, total: int) -> None:
+        """Clips were sensed again."""
+        self._show("sensing", done, total, f"clip {done}/{total}")
+
     def exported(self, done: int, total: int) -> None:
         """Clips were exported."""
         self._show("exporting", done, total, f"clip {done}/{total}")

@@ -10,18 +10,21 @@ import operator
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any, SupportsIndex
+from typing import TYPE_CHECKING, Any, SupportsIndex
 
 import numpy as np
 from numpy.typing import NDArray
 
 from scenegen.foundation.errors import CorruptFrameError, DatasetError, InputError, nearest
 from scenegen_datasets.index import checked, job_of
-from scenegen_datasets.job import SPLITS
+from scenegen_datasets.job import SPLITS, ClipJob
 from scenegen_datasets.layers import LAYERS, check_layers, layers_by_member
 from scenegen_datasets.reader import ShardReader
 from scenegen_datasets.remote import files_at, plain_root
 from scenegen_datasets.source import Source, open_source
+
+if TYPE_CHECKING:
+    from scenegen_datasets.sensing.retake import Retake
 
 PREVIOUS = "previous_thermal"
 """Pseudo-layer: the thermal frame before."""
@@ -52,6 +55,8 @@ class PairDataset:
         Read what is there of a dataset that still grows.
     storage_options : mapping, optional
         What fsspec's file system wants to know about a URL: keys, end points.
+    retake : scenegen_datasets.sensing.retake.Retake, optional
+        Sense ``thermal`` and ``previous_thermal`` again, from stored radiance through this camera.
 
     Attributes
     ----------
@@ -80,6 +85,7 @@ class PairDataset:
         seq_stride: int = 1,
         allow_partial: bool = False,
         storage_options: Mapping[str, Any] | None = None,
+        retake: Retake | None = None,
     ) -> None:
         if split is not None and split not in SPLITS:
             raise InputError(f"unknown split '{split}'{nearest(split, SPLITS)}")
@@ -94,10 +100,12 @@ class PairDataset:
         self.split = split
         self.layers = check_layers(name for name in layers if name != PREVIOUS)
         self._previous = PREVIOUS in layers
+        self._extra = (PREVIOUS,) if self._previous else ()
         self._steps = np.arange(seq_length) * (frame_skip + 1)
         self._stride = seq_stride
         self._allow_partial = allow_partial
         self._storage_options = storage_options
+        self.retake = retake
         self._open()
 
     def _open(self, source: Source | None = None) -> None:
@@ -106,14 +114,22 @@ class PairDataset:
         self._reader = ShardReader(self.root, files)
         self._facts: OrderedDict[int, dict[str, Any]] = OrderedDict()
         stored = self._source.layers
-        missing = [x for x in (*self.layers, *(("thermal",) if self._previous else ())) if x not in stored]
+        wanted = self._needed()
+        missing = [x for x in wanted if x not in stored]
         if missing and len(self._source.rows):
             raise InputError(f"{self.root} holds no layer '{missing[0]}'; it holds {', '.join(stored)}")
         self._groups = {
             member: tuple(LAYERS[x] for x in stored if LAYERS[x].member == member)
-            for member in layers_by_member(self.layers)
+            for member in layers_by_member(self.layers if self.retake is None else wanted)
         }
         self._count_sequences()
+
+    def _needed(self) -> tuple[str, ...]:
+        """Layers that must be stored: a retaken thermal frame comes from radiance."""
+        needed = {*self.layers, *(("thermal",) if self._previous else ())}
+        if self.retake is not None and "thermal" in needed:
+            needed = needed - {"thermal"} | {"radiance"}
+        return check_layers(needed)
 
     def _count_sequences(self) -> None:
         """Sequences per clip, and their running total: sample i is found by bisection, without a list of samples."""
@@ -173,12 +189,13 @@ class PairDataset:
             raise CorruptFrameError(f"{self.root}/index.npy: rows are out of order; run `scenegen verify`")
         job = job_of(row)
         arrays = self._reader.frame(row, job, self._groups)
-        sample: Sample = {name: arrays[name] for name in self.layers}
-        if self._previous:
+        if self.retake is not None and (self._previous or "thermal" in self.layers):
+            arrays |= self._retaken(self.retake, arrays["radiance"], row, job, position)
+        elif self._previous:
             before = checked(self._source.rows[position - 1])
-            sample[PREVIOUS] = self._reader.arrays(before, job, "thermal.png", (LAYERS["thermal"],))[
-                "thermal"
-            ]
+            group = (LAYERS["thermal"],)
+            arrays[PREVIOUS] = self._reader.arrays(before, job, "thermal.png", group)["thermal"]
+        sample: Sample = {name: arrays[name] for name in (*self.layers, *self._extra)}
         return sample | {
             "key": job.key(int(row["frame"])),
             "map": job.map,
@@ -190,6 +207,17 @@ class PairDataset:
             "world_from_camera": row["world_from_camera"].copy(),
             "K": row["K"].copy(),
         }
+
+    def _retaken(
+        self, retake: Retake, radiance: NDArray[Any], row: np.void, job: ClipJob, position: int
+    ) -> dict[str, NDArray[Any]]:
+        """Thermal of a frame and of the one before, sensed one after the other."""
+        before = checked(self._source.rows[position - 1])
+        member = LAYERS["radiance"].member
+        stored = self._reader.arrays(before, job, member, self._groups[member])["radiance"]
+        times = np.array([before["time_s"], row["time_s"]], np.float64)
+        counts = retake.counts(np.stack([stored, radiance]), times, row["K"], job.key(int(row["frame"])))
+        return {PREVIOUS: counts[0], "thermal": counts[1]}
 
     def __getstate__(self) -> dict[str, Any]:
         """Only the arguments travel to another process, which opens index and shards itself.

@@ -1,0 +1,77 @@
+"""``scenegen sense``: look at the stored radiance of a dataset through another camera."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Annotated
+
+import tyro
+
+from scenegen.foundation.errors import InputError
+from scenegen_cli.console import say, say_json, size
+from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
+from scenegen_datasets.resolve import leaves
+
+
+@dataclass(frozen=True)
+class Sense:
+    """Make a dataset of what another camera sees of the same flights, without rendering again.
+
+    Flags are those of render's sections camera and sensor: --sensor.netd-mk 30, --camera.preset tau640. The camera must
+    have the band and the field of view that were rendered, and the same grid or a whole fraction of it.
+    """
+
+    dataset: Annotated[Path, tyro.conf.Positional]
+    """Directory of a finished dataset."""
+    out: Path | None = None
+    """Directory of the new dataset. Must be given."""
+    size: str | None = None
+    """Image size WIDTHxHEIGHT: blocks of stored pixels become one."""
+    seed: int | None = None
+    """Of the new noise; by default that of the dataset's recipe."""
+    jobs: int = 0
+    """Worker processes; 0 is one per CPU."""
+    json: bool = False
+    """Report as JSON."""
+
+
+def run(arguments: Sequence[str]) -> int:
+    """Run the subcommand; returns the exit code."""
+    from scenegen_datasets.sensing.camera import CameraKeys
+
+    keys = [key for key, _, _ in leaves(CameraKeys)]
+    try:
+        own, flags = split_recipe_flags(arguments, keys)
+        command = parse(Sense, "sense", own)
+    except HelpShown:
+        return 0
+    from scenegen_cli.making import processes
+    from scenegen_cli.progress import Meter
+    from scenegen_datasets.sensing.run import sense_dataset
+
+    if command.out is None:
+        raise InputError("--out is missing: name the directory of the new dataset")
+    if command.seed is not None and command.seed < 0:
+        raise InputError(f"--seed {command.seed}: a seed is 0 or more")
+    if command.size is not None:
+        width, height = parse_size(command.size)
+        flags["camera"] = {**flags.get("camera", {}), "width_px": width, "height_px": height}
+    with Meter(quiet=command.json) as meter:
+        done = sense_dataset(
+            command.dataset,
+            command.out,
+            flags,
+            seed=command.seed,
+            processes=processes(command.jobs),
+            told=meter.sensed,
+        )
+    if command.json:
+        say_json({**asdict(done.info), "root": str(command.out), "side_px": done.side, "made": done.made})
+        return 0
+    blocks = f", {done.side}x{done.side} stored pixels each" if done.side > 1 else ""
+    say(
+        f"{command.out}: {done.info.pairs:,} pairs in {done.info.clips:,} clips{blocks}, {size(done.info.bytes)}"
+    )
+    return 0
