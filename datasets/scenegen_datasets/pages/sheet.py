@@ -41,7 +41,7 @@ th{font-weight:500;color:var(--faint);text-align:left;font-size:12.5px;padding:6
 border-bottom:1px solid var(--line)}
 td{padding:7px 16px 7px 0;border-bottom:1px solid var(--hair);vertical-align:middle}
 th:last-child,td:last-child{padding-right:0}
-td.number,th.number{text-align:right;white-space:nowrap}
+td.number,th.number{text-align:right}td.number{white-space:nowrap}
 td.wide{width:40%}
 td.name{white-space:nowrap}
 td.big{font-size:19px;font-weight:600;white-space:nowrap}

@@ -9,7 +9,7 @@ from typing import Any
 
 from scenegen.foundation.atomic import write_atomic
 from scenegen.foundation.canonical import pretty
-from scenegen_datasets.pages.charts import key, stacked_bar
+from scenegen_datasets.pages.charts import interval_bar, key, stacked_bar
 from scenegen_datasets.pages.document import document
 from scenegen_datasets.pages.markup import Html, element, join
 from scenegen_datasets.pages.sheet import BAD, GOOD, NOTE, SERIES
@@ -154,18 +154,13 @@ def _rate(rate: Rate, mean: float | None, colour: str, theirs: float | None) -> 
     counts = f" {rate.count}/{rate.of}; {100 * rate.low:.1f} to {100 * rate.high:.1f}"
     paper = "" if theirs is None else element("div", f"paper {published_words(theirs)}", class_="small")
     figure = element("b", f"{100 * mean:.1f} %")
-    return join([figure, element("span", counts, class_="small"), _interval_bar(rate, mean, colour), paper])
-
-
-def _interval_bar(rate: Rate, share: float, colour: str) -> Html:
-    """A share from 0 to 1 as a bar, its interval as a line across the bar's end."""
-    low, high = 300 * rate.low, 300 * rate.high
-    return Html(
-        '<svg viewBox="0 0 300 14" class="bar" preserveAspectRatio="none">'
-        '<rect width="300" height="14" fill="var(--bar)"/>'
-        f'<rect width="{300 * share:.1f}" height="14" fill="{colour}" opacity=".8"/>'
-        f'<rect x="{low:.1f}" y="5.5" width="{max(high - low, 0.5):.1f}" height="3" fill="var(--ink)" opacity=".75"/>'
-        "</svg>"
+    return join(
+        [
+            figure,
+            element("span", counts, class_="small"),
+            interval_bar(mean, rate.low, rate.high, colour),
+            paper,
+        ]
     )
 
 
