@@ -68,19 +68,19 @@ def hf(root: Path) -> Iterator[Seen]:
 
     loaded = datasets.load_dataset(str(root), cache_dir=str(root.parent / "hf-cache"))
     for split in loaded.values():
-        pictures, arrays = split, split.with_format("numpy", columns=["flow", "world_from_camera", "K"])
+        arrays, rest = split.with_format("numpy", columns=["flow"]), split.remove_columns("flow")
         for k in range(len(split)):
-            row, numbers = pictures[k], arrays[k]
+            row = rest[k]
             exact = {
                 "thermal": np.array(row["thermal"], np.uint16),
                 "depth": np.array(row["depth"]),
                 "semantic": np.array(row["semantic"]),
                 "covisible": np.array(row["covisible"]) > 127,
-                "flow": np.asarray(numbers["flow"], np.float32),
+                "flow": np.asarray(arrays[k]["flow"]),
             }
             assert row["is_pair"] == (row["frame"] > 0)
             assert "wind_mps" in json.loads(row["weather"])
-            pose, K = (np.asarray(numbers[name], float) for name in ("world_from_camera", "K"))
+            pose, K = (np.array(row[name], float) for name in ("world_from_camera", "K"))
             yield Seen(row["key"], exact, pose=pose, K=K, time_s=row["time_s"])
 
 
@@ -118,34 +118,41 @@ def rerun(root: Path) -> Iterator[Seen]:
     """Rerun's reader of recordings: chunks of components by entity and timeline."""
     from rerun.chunk import RrdReader
 
-    for path in sorted(p for home in ("train", "val", "test") for p in (root / home).glob("*.rrd")):
-        rows: dict[int, dict[str, object]] = {}
+    for path in sorted(p for split in ("train", "val", "test") for p in (root / split).glob("*.rrd")):
+        rows: dict[int, dict[str, np.ndarray]] = {}
         for chunk in RrdReader(str(path)).stream():
             batch = chunk.to_record_batch()
-            if "frame" in batch.schema.names:
-                for row in batch.to_pylist():
-                    rows.setdefault(row["frame"], {}).update(
-                        {f"{chunk.entity_path}:{name}": value for name, value in row.items()}
-                    )
+            if "frame" not in batch.schema.names:
+                continue
+            for k, frame in enumerate(batch.column("frame").to_pylist()):
+                row = rows.setdefault(frame, {"time": batch.column("time")[k].value})
+                for name in batch.schema.names[3:]:
+                    row[f"{chunk.entity_path}:{name}"] = _component(batch.column(name).slice(k, 1))
         for frame, row in sorted(rows.items()):
             yield _rerun_frame(f"{path.stem}-{frame:04d}", row)
 
 
-def _rerun_frame(key: str, row: dict[str, object]) -> Seen:
+def _component(column: object) -> np.ndarray:
+    """Numbers of one component of one row; of structs the fields as they are."""
+    while hasattr(column, "flatten") and "list" in str(column.type):  # type: ignore[attr-defined]
+        column = column.flatten()  # type: ignore[attr-defined]
+    if "struct" in str(column.type):  # type: ignore[attr-defined]
+        return column.to_pylist()[0]  # type: ignore[attr-defined, no-any-return]
+    return column.to_numpy(zero_copy_only=False)  # type: ignore[attr-defined, no-any-return]
+
+
+def _rerun_frame(key: str, row: dict[str, np.ndarray]) -> Seen:
     camera = "/world/camera"
-    kinds = {
-        "thermal": ("Image", np.uint16),
-        "depth": ("DepthImage", np.float32),
-        "temperature": ("Image", np.float32),
-    }
-    kinds["semantic"] = ("SegmentationImage", np.uint8)
+    kinds = {"thermal": ("Image", np.uint16), "temperature": ("Image", np.float32)}
+    kinds |= {"depth": ("DepthImage", np.float32), "semantic": ("SegmentationImage", np.uint8)}
     exact = {}
     for name, (kind, dtype) in kinds.items():
-        (form,) = row[f"{camera}/{name}:{kind}:format"]  # type: ignore[misc]
-        (data,) = row[f"{camera}/{name}:{kind}:buffer"]  # type: ignore[misc]
-        exact[name] = np.array(data, np.uint8).view(dtype).reshape(form["height"], form["width"])
+        form = row[f"{camera}/{name}:{kind}:format"]
+        data = row[f"{camera}/{name}:{kind}:buffer"].view(dtype)
+        exact[name] = data.reshape(form["height"], form["width"])
     pose = np.eye(4)
-    pose[:3, :3] = np.array(row[f"{camera}:Transform3D:mat3x3"], float).reshape(3, 3).T  # columns first
-    pose[:3, 3] = np.array(row[f"{camera}:Transform3D:translation"], float).ravel()
-    K = np.array(row[f"{camera}:Pinhole:image_from_camera"], float).reshape(3, 3).T
-    return Seen(key, exact, pose=pose, K=K, time_s=row[f"{camera}:time"].total_seconds())  # type: ignore[attr-defined]
+    pose[:3, :3] = row[f"{camera}:Transform3D:mat3x3"].reshape(3, 3).T  # columns first
+    pose[:3, 3] = row[f"{camera}:Transform3D:translation"]
+    K = row[f"{camera}:Pinhole:image_from_camera"].reshape(3, 3).T.astype(float)
+    assert row[f"{camera}:Pinhole:camera_xyz"].tolist() == [3, 2, 5]  # right, down, forward
+    return Seen(key, exact, pose=pose, K=K, time_s=float(row["time"]) * 1e-9)

@@ -128,10 +128,9 @@ def pix2pix(root: Path, cap_m: float = 100.0) -> Iterator[Seen]:
 
 def ms2(root: Path) -> Iterator[Seen]:
     """`DataLoader_MS2`: lists, calibration, left and right pictures, filtered depth / 256, odometry 4x4."""
-    names = [line[:-1] for split in SPLITS for line in (root / f"{split}_list.txt").open()]
-    tested = [line[:-1] for line in (root / "test_list.txt").open()]
-    halves = [line[:-1] for when in ("day", "night") for line in (root / f"test_{when}_list.txt").open()]
-    assert sorted(tested) == sorted(halves)
+    names = [name for split in SPLITS for name in _sequences(root / f"{split}_list.txt")]
+    halves = [name for when in ("day", "night") for name in _sequences(root / f"test_{when}_list.txt")]
+    assert sorted(_sequences(root / "test_list.txt")) == sorted(halves)
     for name in names:
         calibration = np.load(root / "sync_data" / name / "calib.npy", allow_pickle=True).item()
         baseline = abs(calibration["T_thrR"][0].astype(np.float32)) * 0.001
@@ -151,6 +150,12 @@ def ms2(root: Path) -> Iterator[Seen]:
                 pose_from_first=pose,
                 K=moved(calibration["K_thrL"], 0.5),
             )
+
+
+def _sequences(path: Path) -> list[str]:
+    """Every line without its last character, as the loader takes it."""
+    with path.open() as file:
+        return [line[:-1] for line in file]
 
 
 def filelist(root: Path, kind: str = "kitti") -> Iterator[Seen]:

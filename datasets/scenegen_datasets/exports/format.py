@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any
 
 from scenegen_datasets.exports.clip import Clip
 from scenegen_datasets.exports.options import Options
@@ -49,13 +49,9 @@ class Exported:
     facts: Mapping[str, Any]
 
 
-class Finish(Protocol):
-    """Writes what belongs to the whole export: lists, splits, cameras."""
-
-    def __call__(
-        self, stage: Stage, clips: Sequence[Exported], description: Mapping[str, Any], options: Options
-    ) -> None:
-        """See `Format.finish`."""
+Finish = Callable[[Stage, Sequence[Exported], Mapping[str, Any], Options], None]
+"""Writes what belongs to the whole export (lists, splits, cameras): stage, clips in plan order, ``dataset.json``,
+options."""
 
 
 def nothing_to_finish(
@@ -84,8 +80,8 @@ class Format:
         Size of a frame on disk, on the high side; measured on city flights.
     write : callable
         Writes one clip below a `Stage`. What it writes depends on nothing but the clip and the options.
-    finish : Finish
-        Called once with all clips in plan order, when all of them are there.
+    finish : callable
+        `Finish`, called once with all clips in plan order, when all of them are there.
     heeds : frozenset of str
         Fields of `Options` that matter to it.
     invalid : mapping of str to str

@@ -33,6 +33,7 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
             compressors=ZstdCodec(level=_LEVEL),
             fill_value=0,
             dimension_names=stack.axes,
+            chunk_key_encoding={"name": "default", "separator": "."},  # else a directory for every frame
             attributes={"unit": stack.unit},
         )
     for picture, values in values_of(clip):

@@ -1,0 +1,115 @@
+"""A small dataset whose cameras turn, and a way to export it."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from scenegen.foundation.lock import DirectoryLock
+from scenegen_datasets.clip import ClipRecord
+from scenegen_datasets.commit import commit_clip
+from scenegen_datasets.encode import FrameMeta, encode_frame
+from scenegen_datasets.exports.engine import Outcome, Request, export
+from scenegen_datasets.exports.options import Options
+from scenegen_datasets.finish import finish
+from scenegen_datasets.job import ClipJob
+from scenegen_datasets.layers import DEFAULT_LAYERS
+from scenegen_datasets.store import create_or_open
+
+Exporter = Callable[..., Outcome]
+
+
+def _fakes() -> ModuleType:
+    """The hand-made frames of the tests of files; by its path, since tests are no package."""
+    path = Path(__file__).parents[1] / "ondisk/fakes.py"
+    spec = importlib.util.spec_from_file_location("export_fakes", path)
+    assert spec is not None and spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+FAKES = _fakes()
+
+
+def meta(job: ClipJob, frame: int) -> FrameMeta:
+    """A camera somewhere, turned anyhow: only then do swapped axes show."""
+    rng = np.random.default_rng((job.ordinal, frame))
+    pose = np.eye(4)
+    pose[:3, :3] = Rotation.random(random_state=int(rng.integers(2**31))).as_matrix()
+    pose[:3, 3] = rng.uniform(-300, 300, 3)
+    return replace(FAKES.meta(frame), world_from_camera=pose)
+
+
+def record(job: ClipJob) -> ClipRecord:
+    sensor = {
+        "low_radiance": 15.13,
+        "high_radiance": 215.4,
+        "counts": 16384,
+        "low_K": 233.0,
+        "high_K": 423.0,
+        "linear_in": "radiance",
+    }
+    return replace(FAKES.record(job), sensor=sensor)
+
+
+def make(root: Path, clips: int = 6, layers: tuple[str, ...] = DEFAULT_LAYERS) -> Path:
+    """A finished dataset of clips with 3 pairs, two of each split."""
+    root.mkdir()
+    plan = FAKES.jobs(clips)
+    with DirectoryLock(root):
+        create_or_open(root, "map: city\n", FAKES.lock(clips * FAKES.PAIRS))
+        for job in plan:
+            rng = np.random.default_rng(job.ordinal)
+            frames = (
+                encode_frame(job.key(k), FAKES.frame(rng), FAKES.reading(rng), meta(job, k), layers)
+                for k in range(job.frames)
+            )
+            commit_clip(root, record(job), frames, fingerprint=FAKES.FINGERPRINT)
+        finish(root, plan)
+    return root
+
+
+@pytest.fixture(scope="session")
+def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A dataset that nobody changes."""
+    return make(tmp_path_factory.mktemp("small") / "dataset")
+
+
+@pytest.fixture
+def make_dataset() -> Callable[..., Path]:
+    """`make`, for tests that need another dataset."""
+    return make
+
+
+@pytest.fixture
+def run(small: Path, tmp_path: Path) -> Exporter:
+    """Export the small dataset, by default to ``out`` below the test's directory."""
+
+    def call(to: str, out: str = "out", jobs: int = 1, dataset: Path = small, **rest: object) -> Outcome:
+        splits, maps = rest.pop("splits", ()), rest.pop("maps", ())
+        request = Request(dataset, tmp_path / out, to, Options(**rest), splits, maps)  # type: ignore[arg-type]
+        return export(request, jobs)
+
+    return call
+
+
+@pytest.fixture
+def tree() -> Callable[[Path], dict[str, str]]:
+    """Path to SHA-256 of all files of an export."""
+
+    def read(root: Path) -> dict[str, str]:
+        files = (path for path in sorted(root.rglob("*")) if path.is_file())
+        return {str(p.relative_to(root)): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
+
+    return read
