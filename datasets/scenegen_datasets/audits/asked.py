@@ -45,6 +45,14 @@ class Quantity:
     even: bool = True
     slack: Range = (0.0, 0.0)
 
+    def known(self, clip: Facts) -> bool:
+        """Whether a clip records it; datasets made elsewhere need not know every kind of weather."""
+        try:
+            self.fact(clip)
+        except KeyError:
+            return False
+        return True
+
 
 def _weather(name: str) -> Callable[[Facts], float]:
     return lambda clip: float(clip["weather"][name])

@@ -100,17 +100,21 @@ def audit_draws(clips: Iterable[Facts], recipe: Mapping[str, Any]) -> Draws:
         job = clip["job"]
         world = (str(job["map"]), int(job["world"]))
         for quantity in QUANTITIES:
-            if quantity.per == "clip" or world not in seen:
+            if (quantity.per == "clip" or world not in seen) and quantity.known(clip):
                 values[quantity.name].append(quantity.fact(clip))
         seen.add(world)
         count, rejected = count + 1, rejected + int(clip["rejected"])
         pairs["maps"][world[0]] += int(job["pairs"])
         pairs["splits"][str(job["split"])] += int(job["pairs"])
-        if "style" in clip["extra"]:
+        if "style" in clip.get("extra", {}):
             pairs["styles"][str(clip["extra"]["style"])] += 1
     if not count:
         return Draws(skipped("There is no clip yet."), 0, 0, 0, (), ())
-    draws = tuple(_draw(quantity, np.array(values[quantity.name]), recipe) for quantity in QUANTITIES)
+    draws = tuple(
+        _draw(quantity, np.array(found), recipe)
+        for quantity, found in zip(QUANTITIES, values.values(), strict=True)
+        if found
+    )
     tallies = _tallies(pairs, recipe)
     return Draws(_verdict(draws, count, len(seen)), count, len(seen), rejected, draws, tallies)
 

@@ -123,6 +123,12 @@ def draw_places(source: Source, most: int | None = None) -> tuple[Place, ...]:
     return tuple(places)
 
 
+def count_scale(facts: Mapping[str, Any]) -> CountScale:
+    """What the counts of a clip mean, from its line of ``clips.jsonl``."""
+    sensor = facts["sensor"]
+    return CountScale(sensor["low_K"], sensor["high_K"], tuple(facts["band_um"]), sensor["linear_in"])
+
+
 class StepReader:
     """Reads steps of one dataset.
 
@@ -146,8 +152,7 @@ class StepReader:
         facts = self._source.facts(place.clip)
         at = int(self._source.starts[place.clip]) + place.frame
         row = checked(self._source.rows[at])
-        job, sensor = job_of(row), facts["sensor"]
-        scale = CountScale(sensor["low_K"], sensor["high_K"], tuple(facts["band_um"]), sensor["linear_in"])
+        job = job_of(row)
         return Step(
             job.key(place.frame),
             f"{job.map}-{job.world:05d}",
@@ -155,7 +160,7 @@ class StepReader:
             job.split,
             facts,
             row["K"].copy(),
-            scale,
+            count_scale(facts),
             self._still(row, _NOW),
             self._still(checked(self._source.rows[at + 1]), _NEXT),
         )

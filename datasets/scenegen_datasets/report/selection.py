@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 
 from scenegen.foundation.rng import stream
-from scenegen_datasets.audits.steps import SEED
+from scenegen_datasets.audits.steps import SEED, count_scale
 from scenegen_datasets.layers import check_layers
 from scenegen_datasets.loader import PairDataset
 from scenegen_datasets.pictures.shot import Shot, shot_of
 from scenegen_datasets.source import Source
-from scenegen_render.sensor.scale import CountScale
 
 MOST_ROWS, MOST_FLIGHTS, MOST_FRAMES = 10, 6, 32
 """Moments, animated flights and frames of each."""
@@ -49,12 +48,12 @@ def select(root: Path, source: Source) -> Selection:
     facts = _facts(source, counts)
     rng = stream(SEED, "report", "moments")
     moments = [
-        shot_of(pairs[int(before[k] + rng.integers(counts[k]))], _scale(facts[k]))
+        shot_of(pairs[int(before[k] + rng.integers(counts[k]))], count_scale(facts[k]))
         for k in spread_out(facts, MOST_ROWS)
     ]
     flights = [
         tuple(
-            shot_of(pairs[int(before[k]) + i], _scale(facts[k]))
+            shot_of(pairs[int(before[k]) + i], count_scale(facts[k]))
             for i in range(min(int(counts[k]), MOST_FRAMES))
         )
         for k in spread_out(facts, MOST_FLIGHTS)
@@ -95,11 +94,6 @@ def _facts(source: Source, counts: np.ndarray) -> dict[int, Mapping[str, Any]]:
     if len(usable) > _MOST_FACTS:
         usable = np.sort(stream(SEED, "report", "clips").permutation(usable)[:_MOST_FACTS])
     return {int(k): source.facts(int(k)) for k in usable}
-
-
-def _scale(clip: Mapping[str, Any]) -> CountScale:
-    sensor = clip["sensor"]
-    return CountScale(sensor["low_K"], sensor["high_K"], tuple(clip["band_um"]), sensor["linear_in"])
 
 
 def _layers(source: Source) -> tuple[str, ...]:

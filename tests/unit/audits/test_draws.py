@@ -87,6 +87,12 @@ def test_tallies_stand_beside_what_was_asked() -> None:
     assert styles.asked == {"explore": pytest.approx(2 / 3), "orbit": pytest.approx(1 / 3)}
 
 
+def test_what_a_clip_does_not_record_is_left_out() -> None:
+    weather = {name: value for name, value in clip(0)["weather"].items() if name != "visibility_km"}
+    found = draws(audit_draws([clip(0, weather=weather)], RECIPE))
+    assert "visibility_km" not in found and "wind_mps" in found
+
+
 def test_nothing_yet() -> None:
     assert audit_draws([], RECIPE).verdict.level == "skipped"
 
