@@ -43,8 +43,8 @@ class ClipLines(Sequence[bytes]):
         DatasetError
             If it is missing, a link, or damaged.
         """
-        if path.is_symlink() or not path.is_file():
-            raise DatasetError(f"{path}: missing")
+        if path.is_symlink() or not path.is_file() or path.stat().st_size > clips * _MAX_LINE_BYTES:
+            raise DatasetError(f"{path}: missing, or far too large; run `scenegen verify`")
         found, ends, size, count = hashlib.sha256(), [], 0, 0
         with path.open("rb") as file:
             while size <= _MAX_BYTES and (chunk := file.read(_CHUNK)):

@@ -18,7 +18,7 @@ from scenegen_datasets.index import Rows, rows_of, write_index
 from scenegen_datasets.info import DatasetInfo, info
 from scenegen_datasets.inside import sha256_inside, walk
 from scenegen_datasets.job import ClipJob
-from scenegen_datasets.manifest import file_sha256, manifest_bytes
+from scenegen_datasets.manifest import file_sha256, listable, manifest_bytes
 from scenegen_datasets.receipt import Receipt, read_receipt
 from scenegen_datasets.store import (
     CARD,
@@ -149,4 +149,8 @@ def derive(root: Path, made: Sequence[ClipJob], missing: Sequence[str]) -> Datas
 def _preview_sums(root: Path) -> dict[str, str]:
     if not (root / PREVIEW).is_dir() or (root / PREVIEW).is_symlink():
         return {}
-    return {e.path: sha256_inside(root, e.path) for e in walk(root, PREVIEW) if e.kind == "file"}
+    return {
+        e.path: sha256_inside(root, e.path)
+        for e in walk(root, PREVIEW)
+        if e.kind == "file" and listable(e.path)
+    }

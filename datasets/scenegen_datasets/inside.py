@@ -114,9 +114,17 @@ def read_inside(root: Path, path: str, max_bytes: int) -> bytes:
             raise _refusal(path, error) from None
 
 
-def sha256_inside(root: Path, path: str) -> str:
-    """SHA-256 of a plain file. Errors as `open_inside`."""
+def sha256_inside(root: Path, path: str, max_bytes: int = 1 << 30) -> str:
+    """SHA-256 of a plain file, which must not be larger: a sparse one may claim to be of any size.
+
+    Raises
+    ------
+    DatasetError
+        As `read_inside`.
+    """
     with os.fdopen(open_inside(root, path), "rb") as file:
+        if os.fstat(file.fileno()).st_size > max_bytes:
+            raise DatasetError(f"{path}: larger than the {max_bytes} bytes a sound file can have")
         try:
             return hashlib.file_digest(file, "sha256").hexdigest()
         except OSError as error:

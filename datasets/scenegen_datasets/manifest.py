@@ -10,8 +10,14 @@ from pathlib import Path
 from scenegen.foundation.errors import DatasetError
 from scenegen_datasets.seal import read_bounded
 
-_LINE = re.compile(r"([0-9a-f]{64})  ((?:[A-Za-z0-9_.-]+/)*[A-Za-z0-9_.-]+)")
+_PATH = re.compile(r"(?:[A-Za-z0-9_.-]+/)*[A-Za-z0-9_.-]+")
+_LINE = re.compile(rf"([0-9a-f]{{64}})  ({_PATH.pattern})")
 _MAX_BYTES = 64 << 20
+
+
+def listable(path: str) -> bool:
+    """Whether a manifest can name this path: those of ours are letters, digits, ``_``, ``.`` and ``-``."""
+    return _PATH.fullmatch(path) is not None
 
 
 def manifest_bytes(sums: Mapping[str, str]) -> bytes:

@@ -145,6 +145,8 @@ def remove_partials(directory: Path, of: str | None = None) -> None:
     if not directory.is_dir():
         return
     for entry in os.scandir(directory):
+        if entry.is_dir(follow_symlinks=False):
+            continue  # no writer of ours leaves one
         if is_partial(entry.name) and (of is None or entry.name.startswith(f".{of}.")):
             Path(entry.path).unlink(missing_ok=True)
 
