@@ -7,10 +7,16 @@ import itertools
 import os
 import sys
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
+
+from scenegen.foundation.lock import DirectoryLock
+from scenegen_datasets.lock import make_lock
+from scenegen_datasets.store import create_or_open
 
 
 def _load() -> ModuleType:
@@ -69,3 +75,56 @@ def run_until(step: int, act: Callable[[], object]) -> bool:
 def dies() -> Callable[[int, Callable[[], object]], bool]:
     """``dies(step, act)``: run `act` and die at its `step`-th call that touches the disk; False if it lived."""
     return run_until
+
+
+SENSOR = {"scale_K": [233.0, 423.0], "linear_in": "radiance", "netd_mk": 50.0}
+
+
+def _make_map(root: Path, map: str, clips: int = 6, **more: Any) -> Path:
+    """A dataset of another map; `more` are recipe keys, and ``change``, which alters a clip's record."""
+    change = more.pop("change", lambda record: record)
+    shape = more.pop("shape", _FAKES.SHAPE)
+    camera = {"width_px": shape[1], "band_um": [8.0, 14.0]}
+    recipe = {
+        "pairs": clips * _FAKES.PAIRS,
+        "map": [map],
+        "seed": 0,
+        "sensor": SENSOR,
+        "camera": camera,
+        **more,
+    }
+    lock = make_lock(recipe, name=root.name, scene_semantics=3, render=_FAKES.RENDER)
+    plan = [replace(job, map=map) for job in _FAKES.jobs(clips)]
+    root.mkdir(exist_ok=True)
+    with DirectoryLock(root):
+        create_or_open(root, f"map: {map}\n", lock)
+        for job in plan:
+            frames = _FAKES.encoded(job, shape=shape)
+            record = _FAKES.record(job, shape)
+            record = change(replace(record, weather={**record.weather, "cloud_fraction": 0.5}))
+            _FAKES.commit_clip(root, record, frames, fingerprint=_FAKES.FINGERPRINT)
+        _FAKES.finish(root, plan)
+    return root
+
+
+@pytest.fixture(scope="session")
+def make_map() -> Callable[..., Path]:
+    """``make_map(root, map, clips, **recipe keys)``: a finished dataset."""
+    return _make_map
+
+
+@pytest.fixture(scope="session")
+def parts(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    """Three maps, read-only."""
+    base = tmp_path_factory.mktemp("parts")
+    return {
+        name: _make_map(base / name, name, clips, seed=seed)
+        for name, clips, seed in (("city", 6, 0), ("field", 4, 1), ("coastline", 2, 0))
+    }
+
+
+@pytest.fixture(autouse=True)
+def without_pictures(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only one test draws them: they are most of the time of a merge of such small clips."""
+    if "verifies_loads" not in request.node.name:
+        monkeypatch.setattr("scenegen_datasets.versions.merge.write_preview", lambda _: None)
