@@ -19,8 +19,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 import numpy as np
-from consumers import CONSUMERS, check
 
+from consumers import CONSUMERS, check
 from scenegen_datasets.exports.engine import Request, export
 from scenegen_datasets.job import SPLITS
 

@@ -1,0 +1,62 @@
+"""`scenegen export` from the command line, on a dataset that was really rendered."""
+
+import json
+import signal
+import time
+from pathlib import Path
+
+import pytest
+import small
+
+from consumers import check
+from scenegen_cli.main import main
+
+
+def test_one_command_exports_what_its_consumer_reads(
+    finished_dataset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "out"
+    command = ["export", str(finished_dataset), "--to", "kitti", "--out", str(out), "--jobs", "2"]
+    assert main([*command, "--gain", "fixed", "--gain-K", "230", "340"]) == 0
+    assert "frames of" in capsys.readouterr().out
+    compared, errors = check("kitti", out, finished_dataset)
+    assert compared == small.PAIRS and errors["flow_px"] <= 1 / 128 and errors["depth_m"] <= 1 / 512
+    assert main([*command, "--gain", "ground"]) == 2
+    assert "options.gain" in capsys.readouterr().err
+
+
+def test_json_and_default_place(
+    finished_dataset: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    alias = tmp_path / "data"
+    alias.symlink_to(finished_dataset)
+    assert main(["export", str(alias), "--to", "colmap", "--split", "train", "--jobs", "1", "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    root = tmp_path / "data-colmap"
+    assert told["root"] == str(root) and told["frames"] == sum(1 for _ in root.rglob("images/*.png"))
+    summary = json.loads((root / "export.json").read_text())
+    assert summary["splits"] == ["train"] and summary["format"]["name"] == "colmap"
+    assert check("colmap", root, finished_dataset, ("train",))[0] > 0
+
+
+def test_killed_in_the_middle_and_run_again(finished_dataset: Path, tmp_path: Path) -> None:
+    arguments = ["export", str(finished_dataset), "--to", "exr", "--jobs", "2", "--out"]
+    process = small.start([*arguments, str(tmp_path / "out")])
+    deadline = time.monotonic() + 60
+    while process.poll() is None and not list((tmp_path / "out").glob("*/*/*.exr")):
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    workers = small.children(process.pid)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    while any(map(small.alive, workers)):
+        assert time.monotonic() < deadline
+        time.sleep(0.01)
+    assert main([*arguments, str(tmp_path / "out")]) == 0
+    assert check("exr", tmp_path / "out", finished_dataset)[0] == small.PAIRS
+
+
+def test_help_lists_the_formats(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["export", "--help"]) == 0
+    told = capsys.readouterr().out
+    assert all(f"\n  {name} " in told for name in ("unpack", "kitti", "tartanair", "nerfstudio", "rerun"))
