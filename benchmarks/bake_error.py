@@ -1,22 +1,24 @@
 """How far the exposure is from the truth, in the image: the random part of the radiance and the bias of the bounce.
 
-Random part: two exposures with different seeds, each with its own temperatures and irradiance, photographed from the
-same poses; difference of the frames over the square root of two, in mK of brightness temperature, sky left out. Split
-into what comes through the temperatures (sky view, neighbours) and through the reflected irradiance.
+Random part: two exposures with different seeds, each looked at more closely along four default flights of 65 frames
+and with its own temperatures and irradiance, photographed from the same poses; difference of the frames over the square
+root of two, in mK of brightness temperature, sky left out. Split into what comes through the temperatures (sky view,
+neighbours) and through the reflected irradiance.
 
 Bias of the bounce: baked irradiance, interpolated where pixel centres meet matt surfaces, against 4,096 bounce rays
 from that very place that meet the same warm surfaces; what the difference does to the radiance, in mK.
 
-    python benchmarks/bake_error.py [--directions 64 128] [--hits 1500] [--bias-only]
+    python benchmarks/bake_error.py [--directions 64 128] [--closer-rays 60000] [--hits 1500] [--bias-only]
 """
 
 from __future__ import annotations
 
 import argparse
+import time
 from dataclasses import dataclass
 
 import numpy as np
-from places import BAND_UM, HFOV_DEG, machine, of_map
+from places import BAND_UM, HFOV_DEG, machine
 
 from scenegen.classes import Semantic
 from scenegen.climate.season import Season
@@ -24,18 +26,23 @@ from scenegen.climate.weather import Weather
 from scenegen.exposure import sky_bin_sin_elevation
 from scenegen.foundation.rng import stream
 from scenegen.heat.solve import HeatModel
+from scenegen.maps.registry import build_world, map_family
 from scenegen.radiometry.planck import band_radiance, band_radiance_slope
 from scenegen.radiometry.sky import sky_radiance
 from scenegen.thermal_state import ThermalState
+from scenegen_flythrough.airspace import Airspace
+from scenegen_flythrough.fly import fly
+from scenegen_flythrough.knobs import FlightKnobs
 from scenegen_render import backend
 from scenegen_render.bake import bake
 from scenegen_render.camera import Camera
+from scenegen_render.exposure.closer import look_closer
 from scenegen_render.exposure.directions import cosine_directions, tangents
 from scenegen_render.exposure.expose import expose
 from scenegen_render.exposure.hemisphere import sky_bin
 from scenegen_render.exposure.knobs import ExposureKnobs
 from scenegen_render.knobs import RenderKnobs
-from scenegen_render.scene import LoadedWorld
+from scenegen_render.scene import LoadedWorld, load
 from scenegen_render.trace import Tracer, pixels
 from scenegen_render.trace.pose import device_pose
 
@@ -44,6 +51,7 @@ CLEAR = Weather(294.0, 7.0, 15.0, 284.0, 3.0, cloud_fraction=0.0, linke_turbidit
 HOURS = (4.0, 14.0, 20.0)
 SLOPE = float(band_radiance_slope(np.array([289.0]), BAND_UM)[0])
 BOUNCES = 4096
+FRAMES, EVERY = 65, 12
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,12 +62,43 @@ class Lighting:
     irradiance: np.ndarray
 
 
-def lightings(loaded: LoadedWorld, seed: int, knobs: ExposureKnobs) -> dict[float, Lighting]:
-    """States of a clear July day, all from one exposure."""
+@dataclass(frozen=True, eq=False)
+class Flight:
+    """Poses (frames + 2, 4, 4) flown through a world, and the ones photographed with what follows each."""
+
+    path: np.ndarray
+
+    @property
+    def poses(self) -> list:
+        return [(self.path[k], self.path[k + 1]) for k in range(1, FRAMES + 1, EVERY)]
+
+
+def city() -> tuple[LoadedWorld, list[Flight]]:
+    """World 0 of the city and four default flights."""
+    world = build_world("city", map_family("city").knobs(), SEASON, stream(0, "benchmark", "world"))
+    airspace = Airspace(world)
+    flights = [
+        fly(world, FlightKnobs(), FRAMES, stream(0, "benchmark", "flight", k), airspace) for k in range(4)
+    ]
+    return load(world), [Flight(flight.world_from_camera) for flight in flights]
+
+
+def lightings(
+    loaded: LoadedWorld, camera: Camera, flights: list[Flight], seed: int, knobs: ExposureKnobs
+) -> list[dict[float, Lighting]]:
+    """States of a clear July day for each flight, all from one exposure."""
     exposure = expose(loaded, SEASON, stream(seed, "bake error"), knobs)
-    model = HeatModel.of(loaded.world, exposure)
-    states = {hour: model.solve(CLEAR, hour) for hour in HOURS}
-    return {hour: Lighting(s, bake(loaded, exposure, s, BAND_UM, knobs)) for hour, s in states.items()}
+    model, spent, found = HeatModel.of(loaded.world, exposure), [], []
+    for k, flight in enumerate(flights):
+        start = time.process_time()
+        closer = look_closer(
+            loaded, exposure, camera, flight.path[1:-1], stream(seed, "closer look", k), knobs
+        )
+        spent.append(time.process_time() - start)
+        states = {hour: model.seeing(closer).solve(CLEAR, hour) for hour in HOURS}
+        found.append({hour: Lighting(s, bake(loaded, closer, s, BAND_UM)) for hour, s in states.items()})
+    print(f"  closer look at {FRAMES} frames: {np.median(spent):.2f} s of CPU")
+    return found
 
 
 def frames(
@@ -71,25 +110,47 @@ def frames(
     return np.stack([np.where(f.instance > 0, f.radiance, np.nan) for f in shot])
 
 
+def differences(
+    tracer: Tracer, loaded: LoadedWorld, flight: Flight, a: Lighting, b: Lighting
+) -> dict[str, np.ndarray]:
+    """Random part [mK] of every pixel of a flight: all of it, and what comes through temperatures and reflection."""
+    whole = frames(tracer, loaded, a.state, a.irradiance, flight.poses)
+    others = {
+        "all": frames(tracer, loaded, b.state, b.irradiance, flight.poses),
+        "temperature": frames(tracer, loaded, b.state, a.irradiance, flight.poses),
+        "bounce": frames(tracer, loaded, a.state, b.irradiance, flight.poses),
+    }
+    solid = np.isfinite(whole)
+    return {
+        name: (other - whole)[solid].astype(np.float64) / np.sqrt(2.0) / SLOPE * 1e3
+        for name, other in others.items()
+    }
+
+
 def random_part(
-    tracer: Tracer, loaded: LoadedWorld, poses: list, knobs: ExposureKnobs
-) -> dict[float, Lighting]:
-    """Print the random part at each hour; returns the first exposure's lightings."""
-    first, second = (lightings(loaded, seed, knobs) for seed in (1, 2))
+    tracer: Tracer,
+    loaded: LoadedWorld,
+    flights: list[Flight],
+    first: list[dict[float, Lighting]],
+    second: list[dict[float, Lighting]],
+) -> None:
+    """Print the random part at each hour."""
     for hour in HOURS:
-        a, b = first[hour], second[hour]
-        whole = frames(tracer, loaded, a.state, a.irradiance, poses)
-        parts = {
-            "all": frames(tracer, loaded, b.state, b.irradiance, poses),
-            "temperature": frames(tracer, loaded, b.state, a.irradiance, poses),
-            "bounce": frames(tracer, loaded, a.state, b.irradiance, poses),
-        }
+        errors = [
+            differences(tracer, loaded, flight, a[hour], b[hour])
+            for flight, a, b in zip(flights, first, second, strict=True)
+        ]
         told = []
-        for name, other in parts.items():
-            error = (other - whole)[np.isfinite(whole)].astype(np.float64) / np.sqrt(2.0) / SLOPE * 1e3
-            told.append(f"{name} {np.sqrt(np.mean(error**2)):.1f} rms, {np.median(np.abs(error)):.1f} median")
-        print(f"  random part, {hour:g} h [mK]: " + "; ".join(told) + "  (bar 20 rms)")
-    return first
+        for name in errors[0]:
+            error = np.concatenate([e[name] for e in errors])
+            told.append(f"{name} {rms(error):.1f} rms, {np.median(np.abs(error)):.1f} median")
+        each = ", ".join(f"{rms(e['all']):.0f}" for e in errors)
+        print(f"  random part, {hour:g} h [mK]: " + "; ".join(told) + f"; flights {each}  (bar 20 rms)")
+
+
+def rms(values: np.ndarray) -> float:
+    """Root of the mean square."""
+    return float(np.sqrt(np.mean(values**2)))
 
 
 def places_seen(
@@ -190,14 +251,27 @@ def bounced(loaded: LoadedWorld, lighting: Lighting, face: np.ndarray, uv: np.nd
     return mean
 
 
-def bounce_bias(loaded: LoadedWorld, camera: Camera, poses: list, lighting: Lighting, count: int) -> None:
-    """Print the error of the baked bounce."""
+def bounce_errors(
+    loaded: LoadedWorld, camera: Camera, flight: Flight, lighting: Lighting, count: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Faces of places seen on a flight, and the error of the baked bounce there [mK]."""
     world = loaded.world
-    face, uv = places_seen(loaded, camera, poses, count)
+    face, uv = places_seen(loaded, camera, flight.poses, count)
     baked = between_corners(lighting.irradiance.astype(np.float64) / np.pi, world.corner_site[face], uv)
     eps = np.array([s.emissivity for s in world.palette])[world.face_surface[face]]
-    error = (1 - eps) * (baked - bounced(loaded, lighting, face, uv)) / SLOPE * 1e3
-    leaf = np.isin(world.face_semantic[face], (int(Semantic.TREE), int(Semantic.SHRUB)))
+    return face, (1 - eps) * (baked - bounced(loaded, lighting, face, uv)) / SLOPE * 1e3
+
+
+def bounce_bias(
+    loaded: LoadedWorld, camera: Camera, flights: list[Flight], lit: list[Lighting], count: int
+) -> None:
+    """Print the error of the baked bounce."""
+    pairs = [
+        bounce_errors(loaded, camera, flight, lighting, count // len(flights))
+        for flight, lighting in zip(flights, lit, strict=True)
+    ]
+    face, error = (np.concatenate(part) for part in zip(*pairs, strict=True))
+    leaf = np.isin(loaded.world.face_semantic[face], (int(Semantic.TREE), int(Semantic.SHRUB)))
     print(f"  baked bounce against {BOUNCES:,} rays at {len(face):,} places [mK]: {told(error)}")
     print(f"    without crowns, {np.count_nonzero(~leaf):,} places: {told(error[~leaf])}")
     for line in worst_groups(loaded, face, error):
@@ -209,24 +283,25 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("--directions", type=int, nargs="+", default=[ExposureKnobs().directions])
+    parser.add_argument("--closer-rays", type=int, default=ExposureKnobs().closer_rays, help="a frame")
     parser.add_argument("--hits", type=int, default=1500)
     parser.add_argument("--bias-only", action="store_true", help="leave out the random part")
+    parser.add_argument("--random-only", action="store_true", help="leave out the bias of the bounce")
     asked = parser.parse_args()
-    place = of_map("city")
+    loaded, flights = city()
     camera = Camera.from_fov(256, 256, HFOV_DEG)
     tracer = Tracer(camera, RenderKnobs())
     print(machine())
     for directions in asked.directions:
-        print(
-            f"{directions} directions, {len(place.loaded.world.sites.area):,} sites, {len(place.poses)} poses"
-        )
-        knobs = ExposureKnobs(directions=directions)
-        if asked.bias_only:
-            first = lightings(place.loaded, 1, knobs)
-        else:
-            first = random_part(tracer, place.loaded, place.poses, knobs)
-        for hour in (4.0, 14.0):
-            bounce_bias(place.loaded, camera, place.poses, first[hour], asked.hits)
+        print(f"{directions} directions, {asked.closer_rays:,} closer rays a frame", end=", ")
+        print(f"{len(loaded.world.sites.area):,} sites, {len(flights)} flights")
+        knobs = ExposureKnobs(directions=directions, closer_rays=asked.closer_rays)
+        first = lightings(loaded, camera, flights, 1, knobs)
+        if not asked.bias_only:
+            second = lightings(loaded, camera, flights, 2, knobs)
+            random_part(tracer, loaded, flights, first, second)
+        for hour in () if asked.random_only else (4.0, 14.0):
+            bounce_bias(loaded, camera, flights, [lit[hour] for lit in first], asked.hits)
 
 
 if __name__ == "__main__":

@@ -85,7 +85,7 @@ def states(loaded: LoadedWorld, exposure: Exposure, knobs: ExposureKnobs, stages
     model = stages("heat model (once a world)", lambda: HeatModel.of(loaded.world, exposure))
     for hour in (4.0, 15.0):
         state = stages("  heat", lambda h=hour: model.solve(WEATHER, h))
-        stages("  bake", lambda s=state: bake(loaded, exposure, s, BAND_UM, knobs))
+        stages("  bake", lambda s=state: bake(loaded, exposure, s, BAND_UM))
     stages.spent["state + bake"] = stages.spent["  heat"] + stages.spent["  bake"]
 
 

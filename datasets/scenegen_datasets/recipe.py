@@ -27,7 +27,7 @@ from scenegen_render.exposure.knobs import ExposureKnobs
 from scenegen_render.knobs import RenderKnobs
 from scenegen_render.sensor.knobs import SensorKnobs
 
-SCENE_SEMANTICS = 3
+SCENE_SEMANTICS = 4
 """Raised whenever the same recipe comes to mean other samples; part of every ``recipe_id``."""
 
 MAX_PAIRS = 100_000_000

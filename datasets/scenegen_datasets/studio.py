@@ -27,6 +27,7 @@ from scenegen_datasets.stopwatch import Stopwatch
 from scenegen_flythrough.fly import fly
 from scenegen_flythrough.trajectory import Trajectory
 from scenegen_render.bake import bake
+from scenegen_render.exposure.closer import look_closer
 from scenegen_render.scene import release_memory
 from scenegen_render.sensor.sense import Microbolometer
 from scenegen_render.trace.lit import Lit
@@ -71,16 +72,19 @@ class Studio:
             weather, hour = draw_conditions(
                 self._recipe.climate, self._held_out, stage.exposure.season, self._recipe.seed, job
             )
-        with watch("solve"):
-            state = stage.heat.solve(weather, hour)
-        with watch("bake"):
-            irradiance = bake(
-                stage.loaded, stage.exposure, state, self._camera.band_um, self._recipe.exposure
-            )
         clock = self._clock(path)
         with watch("fly"):
             rng = stream(self._recipe.seed, *path, "flight")
             flight = fly(stage.world, self._recipe.flight, job.frames, rng, stage.airspace, clock)
+        with watch("look closer"):
+            rng, frames = stream(self._recipe.seed, *path, "closer look"), flight.world_from_camera[1:-1]
+            exposure = look_closer(
+                stage.loaded, stage.exposure, self._camera, frames, rng, self._recipe.exposure
+            )
+        with watch("solve"):
+            state = stage.heat.seeing(exposure).solve(weather, hour)
+        with watch("bake"):
+            irradiance = bake(stage.loaded, exposure, state, self._camera.band_um)
         world_s = clock.at(flight.time_s)
         with watch("light"):
             cast = self._tracer.cast(stage.world, flight.world_from_camera, world_s)

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from jaxtyping import Float32, Float64
@@ -25,8 +24,6 @@ from scenegen.radiometry.planck import band_radiance, band_radiance_slope
 from scenegen.radiometry.sky import sky_radiance
 from scenegen.thermal_state import ThermalState
 from scenegen_render import backend
-from scenegen_render.exposure.facets import FacetAverage
-from scenegen_render.exposure.knobs import ExposureKnobs
 from scenegen_render.exposure.views import mean_over_list
 from scenegen_render.scene import LoadedWorld
 
@@ -39,7 +36,6 @@ def bake(
     exposure: Exposure,
     state: ThermalState,
     band_um: tuple[float, float],
-    knobs: ExposureKnobs | None = None,
 ) -> Float32[np.ndarray, "sites"]:
     """Diffuse irradiance of each site in a band [W m^-2].
 
@@ -52,8 +48,6 @@ def bake(
         Temperatures and air; clouds enter by their mean cover.
     band_um : (float, float)
         Spectral band of the camera [um].
-    knobs : ExposureKnobs, optional
-        Those the exposure was made with.
     """
     mi, dr = backend.modules()
     world = loaded.world
@@ -71,21 +65,12 @@ def bake(
         if bounce + 1 < _BOUNCES:
             dr.scatter(table, dr.fma(reflectance, incoming, emission), site)
             dr.eval(table)
-    dr.eval(incoming)
-    met = np.asarray(incoming)
-    if (knobs or ExposureKnobs()).smoothing:
-        met = _average(loaded, exposure)(met)
+    met = np.array(incoming)
+    if exposure.smoother is not None:
+        met = np.asarray(exposure.smoother @ met, np.float32)
+    for closer in exposure.closer:
+        met[closer.site] = mean_over_list(backend.upload(closer.gather), table, len(closer.gather))
     return np.asarray(math.pi * (met.astype(np.float64) + reference), np.float32)
-
-
-def _average(loaded: LoadedWorld, exposure: Exposure) -> FacetAverage:
-    """Smoothing operator of an exposure; fitted once for all its thermal states."""
-    if exposure not in _FITTED:
-        _FITTED[exposure] = FacetAverage.of(loaded.world, exposure.gather)
-    return _FITTED[exposure]
-
-
-_FITTED: WeakKeyDictionary[Exposure, FacetAverage] = WeakKeyDictionary()
 
 
 @cache

@@ -5,12 +5,29 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from jaxtyping import Float16, Float32, Float64, UInt32
+from jaxtyping import Float16, Float32, Float64, Int64, UInt32
+from scipy import sparse
 
 from scenegen.climate.season import Season
 
 SKY_BINS = 1024
 """Sky entries of the gather list: equal steps of sqrt(sin(elevation)), bin 0 at and below the horizon."""
+
+
+@dataclass(frozen=True, eq=False)
+class CloserList:
+    """A gather list of some sites only, with more rays than all others have.
+
+    Attributes
+    ----------
+    site : int64 (some,)
+        Which sites, each at most once.
+    gather : uint32 (directions, some)
+        As in `Exposure`: site indices, or the number of all sites plus a sky bin.
+    """
+
+    site: Int64[np.ndarray, "some"]
+    gather: UInt32[np.ndarray, "directions some"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +51,12 @@ class Exposure:
         directions weigh the same.
     neighbour_share : float32 (sites, groups)
         Cosine-weighted share of the hemisphere taken by each emitter group of `scenegen.heat.emitters`.
+    smoother : scipy.sparse.csr_array (sites, sites) or None
+        Averages what was summed over the gather list along facets; rows sum to one. `sky_view` and `neighbour_share`
+        have been through it.
+    closer : tuple of CloserList
+        Sites that one flight shows, looked at with more rays: `sky_view` and `neighbour_share` of these come from
+        there, unsmoothed, and so does their irradiance. No site is in two of them.
     """
 
     season: Season
@@ -43,6 +66,8 @@ class Exposure:
     sky_view: Float32[np.ndarray, "sites"]
     gather: UInt32[np.ndarray, "directions sites"]
     neighbour_share: Float32[np.ndarray, "sites groups"]
+    smoother: sparse.csr_array | None = None
+    closer: tuple[CloserList, ...] = ()
 
 
 def sky_bin_sin_elevation() -> Float64[np.ndarray, "bins"]:

@@ -35,7 +35,7 @@ def _world(seed: int, blocks: int) -> World:
 def _all(world: World, seed: int, season: Season, directions: int = 64) -> tuple[Exposure, np.ndarray]:
     loaded, knobs = load(world), ExposureKnobs(directions=directions, sun_step_min=60.0)
     exposure = expose(loaded, season, stream(seed, "exposure"), knobs)
-    return exposure, bake(loaded, exposure, uniform_state(world, 291.0, AIR), BAND, knobs)
+    return exposure, bake(loaded, exposure, uniform_state(world, 291.0, AIR), BAND)
 
 
 def digest_of_all(seed: int) -> str:

@@ -107,7 +107,7 @@ class _Studio:
     def __init__(self, stage: Stage, recipe: Recipe, state: ThermalState, time_s: float) -> None:
         self._recipe, self._time_s = recipe, time_s
         band = recipe.camera.band_um
-        irradiance = bake(stage.loaded, stage.exposure, state, band, recipe.exposure)
+        irradiance = bake(stage.loaded, stage.exposure, state, band)
         everyone = range(len(stage.world.movers))
         # What a tracer makes of a state depends on the band alone, not on lens or size.
         self._lit: Lit = self._tracer(_DRONE_FOV_DEG).light(stage.loaded, state, irradiance, everyone)

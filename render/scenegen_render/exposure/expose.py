@@ -44,8 +44,8 @@ def expose(
     gather = gather_list(loaded, for_hemisphere, knobs.directions, turn)
     group, groups = group_sites(world)
     sky, share = shares(gather, group, groups)
-    if knobs.smoothing:
-        average = FacetAverage.of(world, gather)
+    average = FacetAverage.of(world, gather) if knobs.smoothing else None
+    if average is not None:
         sky, share = average(sky), average(share)
     return Exposure(
         season=season,
@@ -55,4 +55,5 @@ def expose(
         sky_view=sky,
         gather=gather,
         neighbour_share=share,
+        smoother=average.weights if average is not None else None,
     )

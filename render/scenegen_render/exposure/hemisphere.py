@@ -23,8 +23,8 @@ _SECTORS = 8
 
 def gather_list(
     loaded: LoadedWorld, rays: SiteRays, directions: int, turn: Float32[np.ndarray, "sites"]
-) -> UInt32[np.ndarray, "directions sites"]:
-    """Trace `directions` rays from each site and note the site or sky bin each one meets.
+) -> UInt32[np.ndarray, "directions some"]:
+    """Trace `directions` rays from each site of `rays` and note the site or sky bin each one meets.
 
     A hit is noted as the site of the nearest corner, a miss as ``sites + bin``; see `scenegen.exposure.Exposure`.
 
@@ -32,10 +32,11 @@ def gather_list(
     ----------
     loaded : LoadedWorld
     rays : SiteRays
+        Of all sites of the world, or of some.
     directions : int
     turn : float32 (sites,)
-        Rotation of each site's directions about its normal, in turns. Neighbours with different turns have
-        independent errors, which smoothing within the facet then averages out.
+        Of all sites of the world: rotation of each one's directions about its normal, in turns. Neighbours with
+        different turns have independent errors, which smoothing within the facet then averages out.
     """
     mi, dr = backend.modules()
     sites = len(rays.order)
@@ -43,7 +44,7 @@ def gather_list(
     met = dr.empty(mi.UInt, directions * sites)
     for lanes in launches(sites, directions, Together.ROWS_OF_A_PLACE):
         entry = fan.trace(lanes)
-        target = lanes.row * fan.sites + dr.gather(mi.UInt, rays.site, lanes.place, lanes.active)
+        target = lanes.row * fan.columns + dr.gather(mi.UInt, rays.site, lanes.place, lanes.active)
         dr.scatter(met, entry, target, lanes.active, mode=dr.ReduceMode.Permute)
         dr.eval(met)
     return np.asarray(met).reshape(directions, sites)
@@ -59,7 +60,7 @@ class _Fan:
         self.loaded, self.rays = loaded, rays
         normal = loaded.world.sites.normal[rays.order]
         wall = np.abs(normal[:, 2]) < _WALL
-        axes = zip(upright_frame(normal), tangents(normal, np.zeros_like(turn)), strict=True)
+        axes = zip(upright_frame(normal), tangents(normal, np.zeros(len(normal), np.float32)), strict=True)
         first, second = (np.where(wall[:, None], upright, plain) for upright, plain in axes)
         self.first, self.second = backend.upload(first), backend.upload(second)
         self.turn = backend.upload(np.stack([turn[rays.order], wall.astype(np.float32)], axis=1))
@@ -69,7 +70,8 @@ class _Fan:
         self.spiral = backend.upload(np.stack([spiral[:, 2], whole], axis=1)[sector].astype(np.float32))
         sector = np.lexsort((split[:, 0], np.floor(split[:, 1] * (_SECTORS // 2)), split[:, 2]))
         self.split = backend.upload(split[sector].astype(np.float32))
-        self.sites = dr.opaque(mi.UInt, len(rays.order))
+        self.columns = dr.opaque(mi.UInt, len(rays.order))
+        self.sites = dr.opaque(mi.UInt, len(turn))
 
     def trace(self, lanes: Lanes) -> Any:
         """What each ray of a launch meets: a site, or the number of sites plus a sky bin."""

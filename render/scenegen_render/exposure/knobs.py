@@ -18,3 +18,5 @@ class ExposureKnobs(Section):
     """Longest step between sun positions [min]; shadow edges are found eight times finer."""
     smoothing: bool = True
     """Average over mesh neighbours on the same facet that see the same."""
+    closer_rays: Annotated[Count, Field(ge=0, le=1_000_000)] = 60_000
+    """Rays spent for each frame of a clip on the sites that its frames show; 0: what every site has is enough."""

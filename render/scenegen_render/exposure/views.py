@@ -20,7 +20,7 @@ def mean_over_list(gather: Any, values: Any, directions: int) -> Any:
     Parameters
     ----------
     gather : mitsuba.UInt
-        Gather list on the device, direction-major.
+        Gather list on the device, direction-major, of all sites or of some.
     values : mitsuba.Float
         One per site, then one per sky bin.
     directions : int
@@ -28,7 +28,7 @@ def mean_over_list(gather: Any, values: Any, directions: int) -> Any:
     Returns
     -------
     mitsuba.Float
-        One per site; summed in the order of the directions.
+        One per site of the list; summed in the order of the directions.
     """
     mi, dr = backend.modules()
     (total,) = _sums(gather, (values,), directions)
@@ -44,8 +44,8 @@ def open_share(gather: UInt32[np.ndarray, "directions sites"]) -> Float32[np.nda
 
 
 def shares(
-    gather: UInt32[np.ndarray, "directions sites"], group: UInt8[np.ndarray, "sites"], groups: int
-) -> tuple[Float32[np.ndarray, "sites"], Float32[np.ndarray, "sites groups"]]:
+    gather: UInt32[np.ndarray, "directions some"], group: UInt8[np.ndarray, "sites"], groups: int
+) -> tuple[Float32[np.ndarray, "some"], Float32[np.ndarray, "some groups"]]:
     """Cosine-weighted share of the hemisphere that is open sky, and that each emitter group takes.
 
     Rays that leave the world at or below the horizon count as neither: the heat balance treats what is missing as
@@ -53,12 +53,15 @@ def shares(
 
     Parameters
     ----------
-    gather : uint32 (directions, sites)
+    gather : uint32 (directions, some)
+        List of all sites, or of some of them.
     group : uint8 (sites,)
+        Of all sites.
     groups : int
     """
     mi, dr = backend.modules()
-    directions, sites = gather.shape
+    directions, some = gather.shape
+    sites = len(group)
     counters = groups + 1
     slot = np.concatenate([group, np.full(SKY_BINS, groups, np.uint8)]).astype(np.uint64)
     word, shift = slot // _PER_WORD, slot % _PER_WORD * _BITS
@@ -68,7 +71,7 @@ def shares(
         dr.opaque(mi.UInt64(np.where(word == w, one, np.uint64(0)))) for w in range(-(-counters // _PER_WORD))
     ]
     words = _sums(backend.upload(gather), tuple(tables), directions)
-    counts = np.empty((sites, counters), np.float32)
+    counts = np.empty((some, counters), np.float32)
     mask = np.uint64((1 << _BITS) - 1)
     for w, packed in enumerate(np.asarray(x) for x in words):
         for k in range(min(_PER_WORD, counters - w * _PER_WORD)):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from jaxtyping import Float32, Float64
@@ -51,6 +51,10 @@ class HeatModel:
         classes = ThermalClasses.of(world)
         outlook = Outlook.of(classes, world.palette, exposure, world.sites.area.astype(np.float64))
         return HeatModel(world, exposure, classes, outlook, Company.of(world.movers))
+
+    def seeing(self, exposure: Exposure) -> HeatModel:
+        """The same world with single sites seen more closely; classes, and what they see on average, stay."""
+        return replace(self, exposure=exposure)
 
     def solve(self, weather: Weather, hour: float) -> ThermalState:
         """Temperatures at one hour of a periodic day of this weather."""

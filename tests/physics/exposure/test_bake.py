@@ -51,7 +51,7 @@ def _baked(
     state = uniform_state(world, 280.0, air)
     temperatures = np.broadcast_to(np.asarray(temperature_K, np.float32), state.temperature_K.shape).copy()
     state = replace(state, temperature_K=temperatures)
-    return bake(loaded, exposure, state, band, knobs).astype(np.float64)
+    return bake(loaded, exposure, state, band).astype(np.float64)
 
 
 def _planck(temperature_K: float, band: tuple[float, float] = BAND) -> float:

@@ -43,7 +43,7 @@ def photograph(
     state = HeatModel.of(world, exposure).solve(WEATHER, 13.0)
     air = Atmosphere(air_K=sky_K, vapour_pressure_hPa=9.0, uniform_sky_K=sky_K, path=False)
     state = replace(state, atmosphere=air)
-    irradiance = bake(loaded, exposure, state, BAND, FINE)
+    irradiance = bake(loaded, exposure, state, BAND)
     tracer = Tracer(Camera.from_fov(px, px, fov_deg), RenderKnobs())
     return tracer.frame(tracer.light(loaded, state, irradiance), pose, pose)
 

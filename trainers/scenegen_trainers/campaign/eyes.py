@@ -131,6 +131,6 @@ def _scenery(
     with watch("solve"):
         state = heat.solve(moment.weather, moment.hour)
     with watch("bake"):
-        irradiance = bake(place.loaded, exposure, state, camera.band_um, recipe.exposure)
+        irradiance = bake(place.loaded, exposure, state, camera.band_um)
     with watch("light"):
         return light(place.loaded, state, irradiance, camera.band_um, range(len(place.world.movers)))
