@@ -118,7 +118,10 @@ QUANTITIES: tuple[Quantity, ...] = (
         "flight.speed_mps",
         lambda c: float(c["speed_mps"]),
         even=False,
-        slack=(float("inf"), 0.01),  # bends are flown more slowly than the cruise that was asked for
+        slack=(
+            float("inf"),
+            0.6,
+        ),  # bends are flown more slowly than the cruise, slopes and gusts add a little
     ),
     Quantity(
         "clearance_m",

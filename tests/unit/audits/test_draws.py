@@ -69,10 +69,13 @@ def test_a_fixed_value_holds_every_clip_to_it() -> None:
     assert found.asked == (3.0, 3.0) and found.outside == 1
 
 
-def test_bends_slow_a_flight_down_but_nothing_speeds_it_up() -> None:
+def test_bends_slow_a_flight_down_and_only_slopes_speed_it_up() -> None:
     slow = draws(audit_draws([clip(0, speed_mps=1.0)], RECIPE))["speed_mps"]
-    fast = draws(audit_draws([clip(0, speed_mps=15.5)], RECIPE))["speed_mps"]
-    assert (slow.outside, fast.outside) == (0, 1)
+    climbing = draws(audit_draws([clip(0, speed_mps=15.5)], RECIPE))[
+        "speed_mps"
+    ]  # 15 m/s up a slope of 15 deg
+    fast = draws(audit_draws([clip(0, speed_mps=15.7)], RECIPE))["speed_mps"]
+    assert (slow.outside, climbing.outside, fast.outside) == (0, 0, 1)
 
 
 def test_draws_that_crowd_are_noted() -> None:
