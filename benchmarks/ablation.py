@@ -51,6 +51,9 @@ VARIANTS: dict[str, tuple[str, dict[str, Any]]] = {
     "sky left out": ("pix2pix-flow", {"target": {"sky": "ignore"}}),
     "noise redrawn": ("pix2pix-flow", {"training": {"noise": "redrawn"}}),
     "FastDepth": ("fastdepth", {}),
+    "FastDepth, linear depth": ("fastdepth", {"target": {"scale": "linear"}}),
+    "FastDepth, sky left out": ("fastdepth", {"target": {"sky": "ignore"}}),
+    "FastDepth, two frames": ("fastdepth", {"inputs": {"frames": 2}}),
     "FastDepth, DIS in a channel": (
         "fastdepth",
         {"inputs": {"flow": "dis", "flow_scale": "full", "flow_shown": "channel"}},

@@ -24,7 +24,7 @@ class Table1:
     data: Path | None = None
     """Directory of a finished dataset. Must be given."""
     profile: str = "ci"
-    """Size of the trainings: ci (15 minutes for all on two cores), small (some hours), paper (a GPU)."""
+    """Size of the trainings: ci (15 minutes for all on two cores), small (half an hour), paper (a GPU)."""
     seeds: int = 3
     """How many seeds, from --first-seed on."""
     first_seed: int = 0
