@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.errors import DatasetError, InputError
+from scenegen_datasets.inside import printable
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.manifest import read_manifest
 from scenegen_datasets.receipt import read_receipt
@@ -96,7 +97,9 @@ def _planned(
         gone = sorted(p for p in manifest if _RECEIPT.fullmatch(p) and p not in {j.receipt for j in sound})
         bad = gone or sorted(c.receipt for c in checks if c.job not in sound)
         if bad:
-            raise InputError(f"{bad[0]} is broken or missing, and cannot be made again: {error}") from None
+            raise InputError(
+                f"{printable(bad[0])} is broken or missing, and cannot be made again: {error}"
+            ) from None
         return tuple(sorted(sound))
 
 
