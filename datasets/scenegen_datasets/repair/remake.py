@@ -33,6 +33,11 @@ def recipe_of(root: Path, lock: Mapping[str, Any]) -> Recipe:
     """
     if lock.get("parts"):
         raise InputError(f"{root} is merged from other datasets: repair those, and merge them again")
+    if "sensed" in lock["recipe"]:
+        raise InputError(
+            f"{root} was sensed from another dataset: remove what is damaged, and run the same `scenegen sense` "
+            "command again"
+        )
     if lock.get("scene_semantics") != SCENE_SEMANTICS:
         raise InputError(
             f"{root} was made when this recipe meant other scenes (version {lock.get('scene_semantics')}, this "
