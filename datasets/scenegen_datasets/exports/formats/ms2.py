@@ -92,7 +92,7 @@ def _a65c(clip: Clip) -> Encoding:
 
 FORMAT = Format(
     name="ms2",
-    readers="MS2 loaders (SupDepth4Thermal, MS2-MultiSpectralStereoDataset, UniDepth, MonoTher-Depth)",
+    readers="MS2 loaders (SupDepth4Thermal, MS2-MultiSpectralStereoDataset)",
     layout=(
         "`sync_data/CLIP/thr/img_left/N.png`, `img_right/`, `calib.npy`; `proj_depth/CLIP/thr/depth_filtered/N.png`; "
         "`odom/CLIP/thr/N.txt`; `SPLIT_list.txt`, `test_day_list.txt`, `test_night_list.txt`"

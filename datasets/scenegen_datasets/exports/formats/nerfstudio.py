@@ -74,7 +74,7 @@ def _npy(depth: np.ndarray) -> bytes:
 
 FORMAT = Format(
     name="nerfstudio",
-    readers="nerfstudio (`ns-train depth-nerfacto`, `splatfacto`), instant-ngp",
+    readers="nerfstudio (`ns-train depth-nerfacto`, `splatfacto`)",
     layout="`SPLIT/CLIP/transforms.json`, `images/frame_N.png`, `depths/frame_N.npy` (mm), `gain.json`",
     range="depth any",
     step="depth 1.2e-7 of itself; thermal 8 bits",
