@@ -58,7 +58,7 @@ def test_scores_strata_and_baselines_of_a_known_answer(toy: Path, tmp_path: Path
     assert found.painted.pixels > found.report.pixels
     low, high = found.interval["rel"]
     assert low <= found.report.pooled.rel <= high
-    assert set(found.baselines) == {"constant", "row mean"}
+    assert set(found.baselines) == {"constant", "row mean", "row mean, sky as cap"}
     assert found.baselines["row mean"].report.pooled.rmse_m < found.baselines["constant"].report.pooled.rmse_m
     paths = write_report(found, answer, data, tmp_path / "report")
     page = json.loads(paths[0].read_text())
@@ -96,6 +96,7 @@ def test_baselines_by_hand(toy: Path) -> None:
     for row in range(32):
         seen = depths[:, row][depths[:, row] < 100.0]
         assert found.row_m[row] == pytest.approx(seen.mean() if len(seen) else 100.0, rel=1e-6)
+        assert found.painted_row_m[row] == pytest.approx(np.minimum(depths[:, row], 100.0).mean(), rel=1e-6)
     assert found.constant_m == pytest.approx(np.median(depths[depths < 100.0]), abs=0.03)
     answers = found.answers((32, 32))
     assert (answers["row mean"] == answers["row mean"][:, :1]).all()

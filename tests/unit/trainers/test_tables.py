@@ -69,13 +69,15 @@ def test_rows_are_held_against_an_answer_without_an_image() -> None:
 
     runs = {row.key: [scores(rmse) for rmse in (9.9, 10.0, 10.1)] for row in ROWS}
     runs["proposed-0"] = [scores(rmse) for rmse in (14.9, 15.0, 15.1)]
-    baselines = {"row mean": scores(12.0), "constant": scores(20.0)}
+    baselines = {"row mean": scores(12.0), "row mean, sky as cap": scores(9.0), "constant": scores(20.0)}
     dataset = {"name": "toy", "version": "1.0.0"}
     table = Table1(dataset, "test", "ci", (0, 1, 2), runs, baselines, 600)
     found = {f.claim: f for f in table.against_trivial() if f.score == "rmse_m"}
     assert found["proposed, w_L1 = 300"].verdict == "held"
     assert found["proposed, w_L1 = 300"].margin == pytest.approx(2.0)
     assert found["proposed, w_L1 = 0"].verdict == "not held"
+    painted = [f.verdict for f in table.against_trivial("painted") if f.score == "rmse_m"]
+    assert painted == ["not held"] * len(ROWS)
     page = as_markdown(table)
     assert page.count("| row mean, no image |  | 12.00 | 0.400 |") == len(kinds)
     assert "| proposed, w_L1 = 0 | not held (-3.000) |" in page

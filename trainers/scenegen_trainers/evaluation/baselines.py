@@ -20,17 +20,24 @@ class Baselines:
         Median of all pixels below the cap [m].
     row_m : float64 (rows,)
         Mean of each image row over pixels below the cap [m]; where a row has none, the cap.
+    painted_row_m : float64 (rows,)
+        Mean of each image row with sky and everything beyond the cap as if it stood there [m]: that of depth pictures.
     """
 
     constant_m: float
     row_m: Float64[np.ndarray, "rows"]
+    painted_row_m: Float64[np.ndarray, "rows"]
 
     def answers(self, shape: tuple[int, int]) -> dict[str, Float32[np.ndarray, "rows columns"]]:
         """Each baseline's answer, the same to every image."""
-        rows = np.broadcast_to(self.row_m[:, None], shape)
+        rows, painted = (
+            np.asarray(np.broadcast_to(mean[:, None], shape), np.float32)
+            for mean in (self.row_m, self.painted_row_m)
+        )
         return {
             "constant": np.full(shape, self.constant_m, np.float32),
-            "row mean": np.asarray(rows, np.float32),
+            "row mean": rows,
+            "row mean, sky as cap": painted,
         }
 
 
@@ -44,19 +51,21 @@ def fit_baselines(training: PairDataset, cap_m: float) -> Baselines:
     cap_m : float
         Pixels at or beyond it, sky included, are left out, as the scores leave them out [m].
     """
-    sums = counts = np.zeros(len(training[0]["depth"]))
+    sums = counts = painted = np.zeros(len(training[0]["depth"]))
     histogram = np.zeros(_BINS, np.int64)
     for sample in training:
         depth = sample["depth"]
         near = depth < cap_m
         sums = sums + np.where(near, depth, 0.0).sum(axis=1, dtype=np.float64)
         counts = counts + near.sum(axis=1)
+        painted = painted + np.minimum(depth, cap_m).mean(axis=1, dtype=np.float64)
         histogram += np.histogram(depth[near], _BINS, (0.0, cap_m))[0]
     rows = np.where(counts > 0, sums / np.maximum(counts, 1.0), cap_m)
+    painted = painted / len(training)
     if not counts.any():
-        return Baselines(cap_m, rows)
+        return Baselines(cap_m, rows, painted)
     middle = int(np.searchsorted(np.cumsum(histogram), 0.5 * histogram.sum()))
-    return Baselines((middle + 0.5) * cap_m / _BINS, rows)
+    return Baselines((middle + 0.5) * cap_m / _BINS, rows, painted)
 
 
 _BINS = 4000

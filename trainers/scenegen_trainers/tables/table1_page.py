@@ -159,6 +159,7 @@ def _judgements(table: Table1) -> list[tuple[str, list[Found]]]:
         sections += [
             ("Better than the mean depth of each image row", table.against_trivial()),
             ("The same, each estimate scaled to its truth's median", table.against_trivial("pooled_aligned")),
+            ("The same, sky judged as cap by both", table.against_trivial("painted")),
         ]
     return sections
 
