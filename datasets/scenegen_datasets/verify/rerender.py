@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from scenegen.foundation.errors import DatasetError, InputError
+from scenegen.foundation.rng import stream
 from scenegen_datasets.index import rows_of
 from scenegen_datasets.layers import layers_by_member
 from scenegen_datasets.lock import fingerprint_id
@@ -100,7 +101,7 @@ def _draw(receipts: list[Receipt], count: int, seed: int) -> list[tuple[Receipt,
     """Frames by clip, both in order."""
     ends = np.cumsum([len(r.frames) for r in receipts], dtype=np.int64)
     total = int(ends[-1]) if len(ends) else 0
-    drawn: NDArray[np.int64] = np.sort(np.random.default_rng(seed).permutation(total)[:count])
+    drawn: NDArray[np.int64] = np.sort(stream(seed, "rerender").permutation(total)[:count])
     found: dict[int, list[int]] = {}
     for at in drawn:
         clip = int(np.searchsorted(ends, at, side="right"))
