@@ -107,7 +107,8 @@ def ask(command: Fly, flags: Mapping[str, Any]) -> Campaign:
     from scenegen_trainers.campaign.run import Campaign
     from scenegen_trainers.campaign.store import BASE_POINT
     from scenegen_trainers.campaign.sweep import parse_sweep
-    from scenegen_trainers.campaign.worker import check_pilot, find_modules_here
+    from scenegen_trainers.campaign.worker import check_pilot
+    from scenegen_trainers.pilots.modules import find_modules_here
     from scenegen_trainers.pilots.spec import parse_pilot
 
     if not 1 <= command.flights <= _MOST_FLIGHTS:

@@ -96,7 +96,7 @@ def prepare(command: Table2, flags: Mapping[str, Any], out: Path) -> Table2Job:
     InputError
         For whatever is wrong, before anything is trained or built.
     """
-    from scenegen_trainers.campaign.worker import find_modules_here
+    from scenegen_trainers.pilots.modules import find_modules_here
     from scenegen_trainers.tables.table2 import FLIGHTS, Table2Job, check_planner, flight_recipe
     from scenegen_trainers.training.source import TrainingData
 

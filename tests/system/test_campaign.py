@@ -135,6 +135,22 @@ def test_a_network_sees_heat_and_a_pilot_that_fails_costs_its_flights_alone(
     assert "pilot failed" in capsys.readouterr().out
 
 
+def test_a_pilot_that_takes_its_process_down_costs_its_flights_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(TESTS)
+    root = tmp_path / "c"
+    pilots = ("--pilot", "crashing_pilot:Crashing", "--versus", "blind")
+    assert main(fly(root, *pilots, flights=4, jobs=1)) == 0
+    crashing, blind = ([row for row in rows(root) if row["pilot"] == name] for name in ("Crashing", "blind"))
+    assert [row["outcome"] == "pilot" for row in crashing] == [False, False, True, False]
+    assert "killed by SIGSEGV" in crashing[2]["reason"]
+    assert [crashing[k]["outcome"] for k in (0, 1, 3)] == [blind[k]["outcome"] for k in (0, 1, 3)]
+    events = [json.loads(line) for line in (root / "run.log.jsonl").read_text("utf-8").splitlines()]
+    strikes = [event for event in events if event["event"] == "strike"]
+    assert len(strikes) == 3 and all(event["died"] and not event["boxed"] for event in strikes)
+
+
 def test_a_sweep_flies_every_value_and_draws_it(tmp_path: Path) -> None:
     root = tmp_path / "c"
     assert main(fly(root, "--pilot", "blind", "--sweep", "speed=3,9", "hour=4", flights=4, jobs=1)) == 0

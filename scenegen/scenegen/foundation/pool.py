@@ -38,11 +38,14 @@ class Failure:
         Of the user error that was raised; None for a bug, a crash or a hang.
     traceback : str
         Of an unexpected exception, or the last words of a dead worker; may be empty.
+    died : bool
+        Whether the worker went down over it, rather than to say what is wrong.
     """
 
     message: str
     exit_code: int | None = None
     traceback: str = ""
+    died: bool = False
 
 
 @dataclass(frozen=True)
@@ -213,7 +216,7 @@ class Pool:
             if self._startup_deaths >= STARTUP_DEATHS:
                 raise WorkerSetupError(f"workers die while they start: {how}")
         if worker.task is not None:
-            yield from self._strike(worker.task, Failure(f"its worker {how}", traceback=worker.log), agenda)
+            yield from self._strike(worker.task, Failure(f"its worker {how}", None, worker.log, died=True), agenda)
 
     def _strike(self, task: Task, failure: Failure, agenda: Agenda) -> Iterator[Event]:
         self._struck[task.key] += 1

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -151,13 +151,39 @@ def run(campaign: Campaign, told: Told) -> dict[str, str]:
     return failed
 
 
-def _fly(
-    campaign: Campaign, missing: list[tuple[str, int, Batch]], log: RunLog, told: Told
-) -> dict[str, str]:
-    here, total = 0, campaign.total
-    flown = total - sum(batch.count for _, _, batch in missing)
-    failed: dict[str, str] = {}
-    told(Progress(flown, total, here))
+Entry = tuple[str, int, Batch]
+"""Point, pilot and batch."""
+
+
+@dataclass
+class _Tally:
+    """What became of the flights so far."""
+
+    flown: int
+    total: int
+    here: int = 0
+    failed: dict[str, str] = field(default_factory=dict)
+
+    def progress(self, what: str = "") -> Progress:
+        return Progress(self.flown, self.total, self.here, what)
+
+
+def _fly(campaign: Campaign, missing: Sequence[Entry], log: RunLog, told: Told) -> dict[str, str]:
+    """Fly, and once more with networks in boxes where a process went down with its batch."""
+    tally = _Tally(campaign.total - sum(batch.count for _, _, batch in missing), campaign.total)
+    told(tally.progress())
+    died = _fly_all(campaign, missing, log, told, tally, boxed=False)
+    if died:
+        _fly_all(campaign, died, log, told, tally, boxed=True)
+    return tally.failed
+
+
+def _fly_all(
+    campaign: Campaign, entries: Sequence[Entry], log: RunLog, told: Told, tally: _Tally, *, boxed: bool
+) -> list[Entry]:
+    """Fly batches; returns those that took their process down and are worth a box."""
+    tasks = {task.key: (task, entry) for entry in entries for task in [_task(campaign, *entry, boxed=boxed)]}
+    died: list[Entry] = []
     with Pool(
         WORKER,
         worker_setup(campaign),
@@ -166,20 +192,25 @@ def _fly(
         share_from=SHARE_FROM,
         silence_s=60.0 + 2.0 * campaign.recipe.loop.patience_s,
     ) as pool:
-        for event in pool.run([_task(campaign, *entry) for entry in missing]):
+        for event in pool.run([task for task, _ in tasks.values()]):
             if isinstance(event, Note):
-                told(Progress(flown, total, here, _words(event)))
+                told(tally.progress(_words(event)))
                 continue
             if isinstance(event, Done):
                 log.write("batch", batch=event.task.key, **event.value)
-                flown, here = flown + event.value["flights"], here + event.value["flights"]
+                tally.flown += event.value["flights"]
+                tally.here += event.value["flights"]
             elif isinstance(event, Strike | Failed):
-                log.write("strike", batch=event.task.key, **asdict(event.failure))
+                log.write("strike", batch=event.task.key, boxed=boxed, **asdict(event.failure))
             if isinstance(event, Failed):
-                _stop_if_hopeless(event, here)
-                failed[event.task.key] = event.failure.message
-            told(Progress(flown, total, here))
-    return failed
+                entry = tasks[event.task.key][1]
+                if event.failure.died and not boxed and campaign.pilots[entry[1]].kind != "name":
+                    died.append(entry)
+                else:
+                    _stop_if_hopeless(event, tally.here)
+                    tally.failed[event.task.key] = event.failure.message
+            told(tally.progress())
+    return died
 
 
 def worker_setup(campaign: Campaign) -> dict[str, Any]:
@@ -192,9 +223,9 @@ def worker_setup(campaign: Campaign) -> dict[str, Any]:
     }
 
 
-def _task(campaign: Campaign, point: str, pilot: int, batch: Batch) -> Task:
+def _task(campaign: Campaign, point: str, pilot: int, batch: Batch, *, boxed: bool) -> Task:
     key = f"{point}/{batch.map}/{campaign.pilots[pilot].slug}/{batch.name}"
-    payload = {"point": point, "pilot": pilot, "batch": asdict(batch)}
+    payload = {"point": point, "pilot": pilot, "batch": asdict(batch), "boxed": boxed}
     return Task(key, f"{batch.map}-{batch.world}", payload)
 
 

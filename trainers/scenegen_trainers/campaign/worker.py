@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
@@ -20,6 +19,7 @@ from scenegen_trainers.campaign.recipe import FlightRecipe
 from scenegen_trainers.campaign.report.plan_view import Frame, draw_plan
 from scenegen_trainers.campaign.sortie import Sortie, Witness
 from scenegen_trainers.campaign.store import BASE_POINT, CampaignStore
+from scenegen_trainers.pilots.modules import find_modules_here
 from scenegen_trainers.pilots.spec import PilotSpec, raise_pilot
 
 Told = Callable[[dict[str, Any]], None]
@@ -35,19 +35,20 @@ class Airfield:
         self.watch = Stopwatch()
         self.places = Places(self.watch)
         self._views: dict[tuple[Camera, int], Views] = {}
-        self._pilots: dict[tuple[PilotSpec, str], Pilot] = {}
+        self._pilots: dict[tuple[PilotSpec, str, bool], Pilot] = {}
 
     def sortie(self, recipe: FlightRecipe, batch: Batch) -> Sortie:
         """Get a batch ready to fly."""
         place = self.places.at(recipe.dataset, batch.map, batch.world)
         return Sortie(recipe, place, batch, self._views_of(recipe), self.watch)
 
-    def pilot(self, spec: PilotSpec, recipe: FlightRecipe) -> Pilot:
+    def pilot(self, spec: PilotSpec, recipe: FlightRecipe, boxed: bool = False) -> Pilot:
         """A pilot for a recipe, built once."""
-        key = spec, recipe.loop.model_dump_json() + recipe.dataset.camera.model_dump_json()
+        key = spec, recipe.loop.model_dump_json() + recipe.dataset.camera.model_dump_json(), boxed
         if key not in self._pilots:
             with self.watch("pilot setup"):
-                self._pilots[key] = raise_pilot(spec, recipe.loop, recipe.dataset.camera.camera())
+                camera = recipe.dataset.camera.camera()
+                self._pilots[key] = raise_pilot(spec, recipe.loop, camera, boxed=boxed)
         return self._pilots[key]
 
     def plan(self, recipe: FlightRecipe, batch: Batch) -> tuple[bytes, dict[str, Any]]:
@@ -79,19 +80,12 @@ def worker(setup: Mapping[str, Any]) -> Callable[[dict[str, Any], Told], dict[st
         if payload["point"] == BASE_POINT and store.read_plan(batch.map, batch.world) is None:
             with airfield.watch("plan"):
                 store.commit_plan(batch.map, batch.world, *airfield.plan(recipe, batch))
-        record = sortie.fly(airfield.pilot(spec, recipe), _sign_of_life(told))
+        record = sortie.fly(airfield.pilot(spec, recipe, payload["boxed"]), _sign_of_life(told))
         store.commit(payload["point"], spec.slug, batch, record)
         decisions = sum(flight.decisions for flight in record.flights)
         return {"flights": len(record.flights), "decisions": decisions, "stages": airfield.watch.take()}
 
     return fly
-
-
-def find_modules_here(path: str = "") -> None:
-    """Look for plug-ins in the user's own directory too, last of all."""
-    here = path or str(Path.cwd())
-    if here not in sys.path:
-        sys.path.append(here)
 
 
 def check_pilot(spec: PilotSpec, recipe: FlightRecipe) -> None:

@@ -6,5 +6,6 @@ else it wants of the two frames is the network's own business and travels with i
 
 * `frames` counts in, metres out: what networks are given, and what is made of their answers;
 * `checkpoint` torch networks, `onnx` ONNX graphs: sources of depth;
+* `box` a source of depth in a process of its own, for one that crashes its process;
 * `spec` pilots by name, file or ``module:attribute``.
 """

@@ -17,6 +17,7 @@ from scenegen_flythrough.loop.pilots import ConstantDepth, DepthPilot, DepthSour
 from scenegen_flythrough.planners.registry import planner, plugged_in
 from scenegen_render.camera import Camera
 from scenegen_trainers.campaign.names import slug
+from scenegen_trainers.pilots.box import BoxedSource
 
 BUILT_IN = {"oracle": TrueDepth, "blind": ConstantDepth}
 """Pilots by name: sources of depth that need no file."""
@@ -93,7 +94,7 @@ def parse_pilot(word: str, planner_name: str) -> PilotSpec:
     )
 
 
-def raise_pilot(spec: PilotSpec, loop: LoopKnobs, camera: Camera) -> Pilot:
+def raise_pilot(spec: PilotSpec, loop: LoopKnobs, camera: Camera, *, boxed: bool = False) -> Pilot:
     """Build a pilot, ready to be told of flights.
 
     Parameters
@@ -102,6 +103,8 @@ def raise_pilot(spec: PilotSpec, loop: LoopKnobs, camera: Camera) -> Pilot:
     loop : LoopKnobs
     camera : Camera
         Whose frames it will be shown.
+    boxed : bool
+        Keep a source of depth that is not ours in a process of its own; see `scenegen_trainers.pilots.box`.
 
     Raises
     ------
@@ -113,12 +116,27 @@ def raise_pilot(spec: PilotSpec, loop: LoopKnobs, camera: Camera) -> Pilot:
         if hasattr(made, "act"):
             flier: Pilot = _checked(made, spec.word, ("name", "needs", "begin", "act"))
             return flier
-        source: DepthSource = _checked(made, spec.word, ("name", "needs", "estimate"))
-    elif spec.kind == "file":
-        source = _network(Path(spec.word), camera)
-    else:
-        source = BUILT_IN[spec.word]()
+    source = raise_source(spec, camera)
+    if boxed and spec.kind != "name":
+        source = BoxedSource(source.name, frozenset(source.needs), spec.to_json(), camera)
     return DepthPilot(source, planner(spec.planner, loop))
+
+
+def raise_source(spec: PilotSpec, camera: Camera) -> DepthSource:
+    """Build the source of depth of a pilot that has one.
+
+    Raises
+    ------
+    InputError
+        If its file or module does not hold what it should.
+    """
+    if spec.kind == "module":
+        source: DepthSource = _checked(_made(spec.word), spec.word, ("name", "needs", "estimate"))
+        return source
+    if spec.kind == "file":
+        return _network(Path(spec.word), camera)
+    built_in: DepthSource = BUILT_IN[spec.word]()
+    return built_in
 
 
 def _network(path: Path, camera: Camera) -> DepthSource:
