@@ -216,7 +216,9 @@ class Pool:
             if self._startup_deaths >= STARTUP_DEATHS:
                 raise WorkerSetupError(f"workers die while they start: {how}")
         if worker.task is not None:
-            yield from self._strike(worker.task, Failure(f"its worker {how}", None, worker.log, died=True), agenda)
+            yield from self._strike(
+                worker.task, Failure(f"its worker {how}", None, worker.log, died=True), agenda
+            )
 
     def _strike(self, task: Task, failure: Failure, agenda: Agenda) -> Iterator[Event]:
         self._struck[task.key] += 1
