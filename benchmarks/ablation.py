@@ -58,6 +58,13 @@ VARIANTS: dict[str, tuple[str, dict[str, Any]]] = {
         "fastdepth",
         {"inputs": {"flow": "dis", "flow_scale": "full", "flow_shown": "channel"}},
     ),
+    "FastDepth, DIS in a channel, sky left out": (
+        "fastdepth",
+        {
+            "inputs": {"flow": "dis", "flow_scale": "full", "flow_shown": "channel"},
+            "target": {"sky": "ignore"},
+        },
+    ),
     "Lite-Mono": ("litemono", {}),
 }
 
