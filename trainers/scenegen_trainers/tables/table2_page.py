@@ -9,13 +9,14 @@ from typing import Any
 
 from scenegen.foundation.atomic import write_atomic
 from scenegen.foundation.canonical import pretty
-from scenegen_datasets.pages.charts import interval_bar, key, stacked_bar
+from scenegen_datasets.pages.charts import interval_bar, key
 from scenegen_datasets.pages.document import document
 from scenegen_datasets.pages.markup import Html, element, join
-from scenegen_datasets.pages.sheet import BAD, GOOD, NOTE, SERIES
+from scenegen_datasets.pages.sheet import SERIES
 from scenegen_datasets.pages.tables import Column, number
 from scenegen_datasets.pages.tables import table as drawn
-from scenegen_trainers.campaign.report.ink import END_WORDS
+from scenegen_trainers.campaign.report.charts import ends_bar
+from scenegen_trainers.campaign.report.ink import END_COLOUR, END_WORDS
 from scenegen_trainers.campaign.statistics import CONFIDENCE, Rate
 from scenegen_trainers.campaign.store import PAGE
 from scenegen_trainers.campaign.summary import Line, rate_json
@@ -33,7 +34,6 @@ STEM = "table2"
 PILOTS = (*METHODS, *BOUNDS)
 
 _COLOUR = dict(zip(PILOTS, (SERIES[0], SERIES[1], SERIES[5], SERIES[5]), strict=True))
-_END_COLOUR = {"goal": GOOD, "collision": BAD, "timeout": NOTE, "pilot": SERIES[3]}
 _APART = {"lower": "good", "higher": "bad", "open": "faint"}
 
 
@@ -115,7 +115,7 @@ def as_html(table: Table2) -> str:
         element("p", words.NOTE, class_="small"),
         element("p", words.AVERAGES, class_="small"),
         element("h2", "How flights ended"),
-        key([(_END_COLOUR[kind], word) for kind, word in END_WORDS.items()]),
+        key([(END_COLOUR[kind], word) for kind, word in END_WORDS.items()]),
         drawn(ends, [_end_row(map, pilot, line) for (map, pilot), line in table.lines.items()]),
         element("p", link),
     )
@@ -165,14 +165,10 @@ def _rate(rate: Rate, mean: float | None, colour: str, theirs: float | None) -> 
 
 
 def _end_row(map: str, pilot: str, line: Line) -> list[object]:
-    parts = [
-        (rate.share if rate.of else 0.0, _END_COLOUR[kind], f"{END_WORDS[kind]}: {rate.count}")
-        for kind, rate in line.ends.items()
-    ]
     return [
         map,
         pilot,
-        stacked_bar(parts),
+        ends_bar(line.ends),
         words.spread_words(line.progress, 100.0, "%"),
         words.spread_words(line.speed_mps, 1.0, "m/s"),
         element("span", words.hit_words(line), class_="small"),
