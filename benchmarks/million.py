@@ -35,7 +35,8 @@ import json, pickle, sys
 from pathlib import Path
 from scenegen_datasets import PairDataset
 def memory(what):
-    return next(int(x.split()[1]) / 1024 for x in Path("/proc/self/status").read_text().splitlines() if x.startswith(what))
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return next(int(x.split()[1]) / 1024 for x in lines if x.startswith(what))
 found = {"import_s": time.perf_counter() - wall, "import_MiB": memory("VmRSS")}
 wall, cpu = time.perf_counter(), time.process_time()
 pairs = PairDataset(sys.argv[1], "train")

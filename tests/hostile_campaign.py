@@ -74,7 +74,7 @@ class Campaign:
         self._child.stdin.flush()
         line = self._child.stdout.readline()
         if not line:
-            code = self._child.wait()
+            code = self._stop()
             self._start()
             return f"WRONG: the reader died with {code}"
         return str(json.loads(line))
@@ -89,11 +89,12 @@ class Campaign:
             text=True,
         )
 
-    def _stop(self) -> None:
-        if self._child.poll() is None:
+    def _stop(self) -> int:
+        """Let the reader end and close both pipes; returns how it ended."""
+        with self._child:
             assert self._child.stdin is not None
             self._child.stdin.close()
-            self._child.wait(timeout=60)
+            return self._child.wait(timeout=60)
 
     def _watched(self) -> dict[str, object]:
         return {

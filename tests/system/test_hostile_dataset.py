@@ -22,10 +22,9 @@ def campaign(finished_dataset: Path, tmp_path_factory: pytest.TempPathFactory) -
 
 @pytest.mark.parametrize("kind", sorted(MUTANTS))
 def test_readers_refuse_in_one_line_or_read_what_is_sound(campaign: Campaign, kind: str) -> None:
-    for seed in (1, 2):
-        _, found = campaign.read(seed, kind)
-        assert found.keys() == READERS.keys()
-        assert {what for what in found.values() if what.startswith("WRONG")} == set(), (kind, seed, found)
+    _, found = campaign.read(1, kind)
+    assert found.keys() == READERS.keys()
+    assert {what for what in found.values() if what.startswith("WRONG")} == set(), (kind, found)
 
 
 def test_a_sound_dataset_passes_them_all(campaign: Campaign) -> None:

@@ -57,14 +57,20 @@ def test_frames_are_rendered_again_from_the_lock_alone(
     finished_dataset: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     before = small.tree(finished_dataset)
-    assert main(["verify", str(finished_dataset), "--rerender", "2", "--seed", "3", "--jobs", "1", "--json"]) == 0
+    assert (
+        main(["verify", str(finished_dataset), "--rerender", "2", "--seed", "3", "--jobs", "1", "--json"])
+        == 0
+    )
     told = json.loads(capsys.readouterr().out)["rerendered"]
     assert (len(told["frames"]), told["identical"], told["same_software"]) == (2, 2, True)
     assert small.tree(finished_dataset) == before
 
 
 def test_other_software_is_refused_before_anything_is_rendered(
-    finished_dataset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    finished_dataset: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     from scenegen_datasets.repair import remake
 
