@@ -15,6 +15,7 @@ from scenegen.foundation.rng import stream
 from scenegen_datasets.index import checked, job_of
 from scenegen_datasets.layers import LAYERS, layers_by_member
 from scenegen_datasets.reader import ShardReader
+from scenegen_datasets.scale import scale_of
 from scenegen_datasets.source import Source
 from scenegen_render.sensor.scale import CountScale
 
@@ -123,12 +124,6 @@ def draw_places(source: Source, most: int | None = None) -> tuple[Place, ...]:
     return tuple(places)
 
 
-def count_scale(facts: Mapping[str, Any]) -> CountScale:
-    """What the counts of a clip mean, from its line of ``clips.jsonl``."""
-    sensor = facts["sensor"]
-    return CountScale(sensor["low_K"], sensor["high_K"], tuple(facts["band_um"]), sensor["linear_in"])
-
-
 class StepReader:
     """Reads steps of one dataset.
 
@@ -160,7 +155,7 @@ class StepReader:
             job.split,
             facts,
             row["K"].copy(),
-            count_scale(facts),
+            scale_of(facts),
             self._still(row, _NOW),
             self._still(checked(self._source.rows[at + 1]), _NEXT),
         )

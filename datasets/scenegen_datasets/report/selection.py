@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from scenegen.foundation.rng import stream
-from scenegen_datasets.audits.steps import SEED, count_scale
+from scenegen_datasets.audits.steps import SEED
 from scenegen_datasets.layers import check_layers
 from scenegen_datasets.loader import PairDataset
 from scenegen_datasets.pictures.shot import Shot, shot_of
+from scenegen_datasets.scale import scale_of
 from scenegen_datasets.source import Source
 
 MOST_ROWS, MOST_FLIGHTS, MOST_FRAMES = 10, 6, 32
@@ -48,12 +49,12 @@ def select(root: Path, source: Source) -> Selection:
     facts = _facts(source, counts)
     rng = stream(SEED, "report", "moments")
     moments = [
-        shot_of(pairs[int(before[k] + rng.integers(counts[k]))], count_scale(facts[k]))
+        shot_of(pairs[int(before[k] + rng.integers(counts[k]))], scale_of(facts[k]))
         for k in spread_out(facts, MOST_ROWS)
     ]
     flights = [
         tuple(
-            shot_of(pairs[int(before[k]) + i], count_scale(facts[k]))
+            shot_of(pairs[int(before[k]) + i], scale_of(facts[k]))
             for i in range(min(int(counts[k]), MOST_FRAMES))
         )
         for k in spread_out(facts, MOST_FLIGHTS)
