@@ -57,6 +57,8 @@ def run(arguments: Sequence[str]) -> int:
         return 0
     say(table([HEAD, *(row(entry) for _, _, entry in found)]))
     for _, out, entry in found:
-        note(f"{out}{'' if entry.from_counts else '  takes the embedded image: flow is computed outside'}")
+        note(
+            f"{out}{'' if entry.cost.from_counts else '  takes the embedded image: flow is computed outside'}"
+        )
     note(NOTE)
     return 0

@@ -8,7 +8,7 @@ from typing import Any
 
 from scenegen.foundation.errors import InputError
 from scenegen_trainers.deploy.cost import FASTEST_MPS, Cost, cost_of
-from scenegen_trainers.deploy.graph import onnx_graph, takes_counts
+from scenegen_trainers.deploy.graph import onnx_graph
 from scenegen_trainers.models.checkpoint import Checkpoint
 from scenegen_trainers.models.network import DepthNetwork
 from scenegen_trainers.training.recipe import resolve_training
@@ -25,15 +25,12 @@ class Entry:
     model : str
     width_px, height_px : int
         Of its frames.
-    from_counts : bool
-        Whether the graph takes counts, so that `scenegen fly` can fly it; else flow and gain are computed outside.
     cost : Cost
     """
 
     model: str
     width_px: int
     height_px: int
-    from_counts: bool
     cost: Cost
 
     def to_json(self) -> dict[str, Any]:
@@ -83,7 +80,7 @@ def budget(
         size = int(camera["width_px"]), int(camera["height_px"])
         for count in counts:
             cost = cost_of(checkpoint, graph, count, repeats)
-            yield Entry(name, *size, takes_counts(checkpoint.network.inputs), cost), graph
+            yield Entry(name, *size, cost), graph
 
 
 HEAD = (
@@ -93,8 +90,9 @@ HEAD = (
 """Of `row`."""
 
 NOTE = (
-    "Median time of one frame: input is gain, flow and embedding, torch and onnxruntime are the network. Flown "
-    f"meanwhile: at {FASTEST_MPS:g} m/s, during input and onnxruntime."
+    "Median time of one frame: input is gain, flow and embedding; torch is the network; onnxruntime the graph, which "
+    "computes the gain itself where there is no flow. Flown meanwhile: at "
+    f"{FASTEST_MPS:g} m/s, during what onnxruntime takes, and input where there is flow."
 )
 
 

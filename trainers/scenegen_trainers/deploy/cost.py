@@ -15,7 +15,7 @@ from torch.utils.flop_counter import FlopCounterMode
 
 from scenegen.foundation.errors import InputError
 from scenegen.foundation.rng import stream
-from scenegen_trainers.deploy.graph import example_inputs
+from scenegen_trainers.deploy.graph import example_inputs, takes_counts
 from scenegen_trainers.inputs.look import compose, look
 from scenegen_trainers.models.checkpoint import Checkpoint
 
@@ -34,6 +34,8 @@ class Cost:
         Multiplications with addition for one frame: convolutions and matrix products.
     graph_bytes : int
     threads : int
+    from_counts : bool
+        Whether the graph takes counts and computes their gain itself; else it takes the embedded image.
     input_ms, torch_ms, onnx_ms : float
         Median milliseconds for one frame: gain, flow and embedding; the network by torch; the graph by onnxruntime.
     difference_m : float
@@ -44,6 +46,7 @@ class Cost:
     macs: int
     graph_bytes: int
     threads: int
+    from_counts: bool
     input_ms: float
     torch_ms: float
     onnx_ms: float
@@ -51,8 +54,8 @@ class Cost:
 
     @property
     def blind_m(self) -> float:
-        """How far a drone at top speed flies while one frame is worked on by onnxruntime [m]."""
-        return FASTEST_MPS * 1e-3 * (self.input_ms + self.onnx_ms)
+        """How far a drone at top speed flies while one frame is worked on, the network by onnxruntime [m]."""
+        return FASTEST_MPS * 1e-3 * (self.onnx_ms + (0.0 if self.from_counts else self.input_ms))
 
 
 def cost_of(checkpoint: Checkpoint, graph: bytes, threads: int = 1, repeats: int = 20) -> Cost:
@@ -88,6 +91,7 @@ def cost_of(checkpoint: Checkpoint, graph: bytes, threads: int = 1, repeats: int
                 macs=_macs(network.model, image),
                 graph_bytes=len(graph),
                 threads=threads,
+                from_counts=takes_counts(network.inputs),
                 input_ms=_milliseconds(
                     lambda: compose(look(now, before, network.inputs, flow), network.inputs), repeats
                 ),
