@@ -17,7 +17,7 @@ from collections import defaultdict
 from pathlib import Path
 
 WORLD = ("build", "load", "expose", "heat classes", "airspace")
-CLIP = ("weather", "solve", "bake", "light", "fly", "commit")
+CLIP = ("weather", "fly", "look closer", "solve", "bake", "light", "commit")
 FRAME = ("trace", "sense", "encode", "write")
 
 
