@@ -161,7 +161,8 @@ def test_a_sweep_flies_every_value_and_draws_it(tmp_path: Path) -> None:
     }
     assert speed["speed=3"] < 3.5 < speed["speed=9"]
     assert {row["hour"] for row in found if row["point"] == "hour=4"} == {"4.0"}
-    assert (root / "index.html").read_text("utf-8").count('class="chart"') == 2
+    page = (root / "index.html").read_text("utf-8")
+    assert [f'aria-label="{words}"' in page for words in ("cruise speed [m/s]", "hour [h]")] == [True, True]
 
 
 @pytest.mark.parametrize(
