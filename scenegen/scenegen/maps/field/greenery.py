@@ -20,8 +20,8 @@ _BROAD = ("oak", "lime", "birch", "poplar")
 _WOODS = (("oak", "birch", "lime"), ("spruce", "pine"), ("oak", "birch", "spruce", "pine"))
 _TALL_M = {"oak": (9.0, 17.0), "lime": (8.0, 15.0), "birch": (8.0, 15.0), "poplar": (14.0, 24.0)}
 _WOOD_TALL_M = (10.0, 18.0)
-_LEAF_BUDGET = 140_000
-"""Triangles that trees may have; the farthest trees go first."""
+_LEAF_BUDGET = 420_000
+"""Triangles that trees may have; the farthest become masses first, which nothing should fly close by."""
 _HEDGES_M = 1600.0
 """Metres of hedge; nearest first, since each has sixty triangles."""
 _NEAR_SHARE, _NEAR_DETAIL, _FAR_DETAIL = 0.62, 0.65, 0.25
