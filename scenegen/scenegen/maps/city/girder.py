@@ -63,7 +63,7 @@ def _girder(viaduct: Viaduct, bridge: int, concrete: int, shop: CityWorkshop) ->
 
 
 def _rails(viaduct: Viaduct, bridge: int, shop: CityWorkshop) -> list[Part]:
-    """Four rails on the bed."""
+    """Four rails on the bed. Sides and top have sites of their own: one sees hot ballast, the other the sky."""
     steel = shop.palette.only("steel_oxidised")
     parts = []
     for track in _TRACKS_M:
@@ -73,7 +73,7 @@ def _rails(viaduct: Viaduct, bridge: int, shop: CityWorkshop) -> list[Part]:
                 [[x + 0.05, z], [x + 0.04, z + _RAIL_M], [x - 0.04, z + _RAIL_M], [x - 0.05, z]]
             )
             skin, label, owner = (np.full(3, v, np.int64) for v in (steel, int(Semantic.BRIDGE), bridge))
-            parts.append(sweep(viaduct.line, profile, skin, label, owner, lumped=True))
+            parts.append(sweep(viaduct.line, profile, skin, label, owner))
     return parts
 
 
