@@ -36,10 +36,12 @@ class Gallery:
         self.library = library
         self.layers = drawable(library.layers)
         self._ranges = lru_cache(maxsize=64)(self._ranges_of)
+        # The page asks for a caption, then the browser for the picture above it.
+        self._drawn = lru_cache(maxsize=32)(self._draw)
 
     def panel(self, clip: int, frame: int, layer: str, tone: Tone) -> Panel:
-        """Draw one layer of a frame, in colours that mean the same in all frames of its clip."""
-        return panel(self.library.still(clip, frame), layer, self._ranges(clip), tone.gain, tone.palette)
+        """One layer of a frame, in colours that mean the same in all frames of its clip."""
+        return self._drawn(clip, frame, layer, tone)
 
     def png(self, clip: int, frame: int, layer: str, tone: Tone) -> bytes:
         """The same as a file."""
@@ -69,6 +71,9 @@ class Gallery:
             if word not in known:
                 raise InputError(f"no picture '{word}'{nearest(str(word), known)}")
         return self.png(clip, frame, layer, Tone(gain, palette))
+
+    def _draw(self, clip: int, frame: int, layer: str, tone: Tone) -> Panel:
+        return panel(self.library.still(clip, frame), layer, self._ranges(clip), tone.gain, tone.palette)
 
     def _ranges_of(self, clip: int) -> Ranges:
         last = self.library.clips[clip].frames - 1
