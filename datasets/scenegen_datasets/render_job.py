@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from scenegen.foundation.errors import InputError, NoSpaceError, ScenegenError
+from scenegen.foundation.errors import InputError, ScenegenError
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import layers_by_member
+from scenegen_datasets.place import check_room, existing_part
 from scenegen_datasets.plan import plan
 from scenegen_datasets.recipe import Recipe
 from scenegen_datasets.store import check_output, finished
@@ -99,15 +99,17 @@ def prepare(job: Job) -> None:
         If what is missing does not fit on the device.
     """
     try:
-        existing = next(p for p in (job.root.absolute(), *job.root.absolute().parents) if p.exists())
-        if not existing.is_dir():
-            raise InputError(f"--out {job.root}: {existing} is a file; name a directory")
+        existing = existing_part(job.root)
         if not os.access(existing, os.W_OK | os.X_OK):
             raise InputError(f"--out {job.root}: {existing} cannot be written; choose another --out")
         if existing == job.root.absolute():
             check_output(job.root)
-        device = shutil.disk_usage(existing)
         done = finished(job.root) if job.root.is_dir() else set()
+        missing = sum(clip.name not in done for clip in job.clips)
+        need_bytes = job.bytes * missing / len(job.clips)
+        check_room(
+            job.root, existing, need_bytes, "ask for fewer pairs or fewer layers, or choose another --out"
+        )
     except ScenegenError:
         raise
     except (OSError, ValueError) as error:
@@ -115,13 +117,6 @@ def prepare(job: Job) -> None:
         raise InputError(
             f"--out {str(job.root)[:80]!r}: cannot be used: {reason}; choose another --out"
         ) from None
-    missing = sum(clip.name not in done for clip in job.clips)
-    need, free = job.bytes * missing / len(job.clips), device.free
-    if need > free and device.total > 0:  # a pseudo file system has no size at all
-        raise NoSpaceError(
-            f"{job.root}: about {need / 1e9:.1f} GB are needed and {free / 1e9:.1f} GB are free; "
-            "ask for fewer pairs or fewer layers, or choose another --out"
-        )
     try:
         job.root.mkdir(parents=True, exist_ok=True)
     except OSError as error:

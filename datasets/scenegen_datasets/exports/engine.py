@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import shutil
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -33,6 +32,7 @@ from scenegen_datasets.exports.registry import format_called
 from scenegen_datasets.exports.stage import Stage
 from scenegen_datasets.index import checked, job_of
 from scenegen_datasets.job import SPLITS, ClipJob
+from scenegen_datasets.place import check_room, existing_part
 from scenegen_datasets.run import WORKER_ENVIRONMENT
 from scenegen_datasets.source import Source, open_source
 from scenegen_datasets.store import DATASET
@@ -215,17 +215,15 @@ def _prepare(request: Request, plan: _Plan) -> None:
     if root == dataset or dataset in root.parents or root in dataset.parents:
         raise InputError(f"--out {request.root}: lies inside the dataset or around it; choose another --out")
     try:
-        existing = next(p for p in (root, *root.parents) if p.exists())
-        if not existing.is_dir():
-            raise InputError(f"--out {request.root}: {existing} is a file; name a directory")
+        existing = existing_part(request.root)
         missing = [job for job in plan.jobs if not (root / FOLDER / "clips" / f"{job.name}.json").exists()]
-        need = plan.format.bytes_per_pixel * plan.pixels * len(missing) / len(plan.jobs)
-        device = shutil.disk_usage(existing)
-        if need > device.free and device.total > 0:
-            raise NoSpaceError(
-                f"{request.root}: about {need / 1e9:.1f} GB are needed and {device.free / 1e9:.1f} GB are free; "
-                "export fewer clips (--split, --map), or choose another --out"
-            )
+        need_bytes = plan.format.bytes_per_pixel * plan.pixels * len(missing) / len(plan.jobs)
+        check_room(
+            request.root,
+            existing,
+            need_bytes,
+            "export fewer clips (--split, --map), or choose another --out",
+        )
         root.mkdir(parents=True, exist_ok=True)
     except ScenegenError:
         raise

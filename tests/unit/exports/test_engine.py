@@ -146,7 +146,7 @@ def test_a_missing_layer_is_named(run: Run, make_dataset: Make, tmp_path: Path) 
 
 
 def test_a_full_device_is_said(run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(engine.shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(100, 100, 0))
+    monkeypatch.setattr(shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(100, 100, 0))
     with pytest.raises(NoSpaceError, match="are needed"):
         run("kitti")
     monkeypatch.undo()

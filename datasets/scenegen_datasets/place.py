@@ -1,0 +1,52 @@
+"""Where something large is about to be written: is that a directory, and is there room?"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from scenegen.foundation.errors import InputError, NoSpaceError
+
+
+def existing_part(root: Path) -> Path:
+    """Return the deepest part of `root` that is there already: `root` itself, or what it will be made in.
+
+    Raises
+    ------
+    InputError
+        If that is a file.
+    OSError, ValueError
+        If no such path can be looked at.
+    """
+    absolute = root.absolute()
+    existing = next(p for p in (absolute, *absolute.parents) if p.exists())
+    if not existing.is_dir():
+        raise InputError(f"--out {root}: {existing} is a file; name a directory")
+    return existing
+
+
+def check_room(root: Path, existing: Path, need_bytes: float, instead: str) -> None:
+    """Refuse what does not fit.
+
+    Parameters
+    ----------
+    root : Path
+        What is going to be written, for the message.
+    existing : Path
+        On the same device: `existing_part` of `root`.
+    need_bytes : float
+    instead : str
+        What the user may do instead.
+
+    Raises
+    ------
+    NoSpaceError
+        If the device has less free.
+    OSError
+        If the device cannot be asked.
+    """
+    device = shutil.disk_usage(existing)
+    if need_bytes > device.free and device.total > 0:  # a pseudo file system has no size at all
+        raise NoSpaceError(
+            f"{root}: about {need_bytes / 1e9:.1f} GB are needed and {device.free / 1e9:.1f} GB are free; {instead}"
+        )
