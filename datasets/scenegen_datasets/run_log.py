@@ -11,6 +11,7 @@ from types import TracebackType
 from typing import Any, TextIO
 
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.plain_file import open_plain
 from scenegen_datasets.store import RUN_LOG
 
 
@@ -21,6 +22,11 @@ class RunLog:
     ----------
     root : Path
         Dataset directory.
+
+    Raises
+    ------
+    InputError
+        On entering, if the log cannot be written, or a link or a pipe lies in its place.
     """
 
     def __init__(self, root: Path) -> None:
@@ -29,9 +35,7 @@ class RunLog:
 
     def __enter__(self) -> RunLog:
         try:
-            descriptor = os.open(
-                self.path, os.O_WRONLY | os.O_CREAT | os.O_APPEND | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666
-            )
+            descriptor = open_plain(self.path, os.O_WRONLY | os.O_APPEND)
         except OSError as error:
             raise InputError(f"cannot write {self.path}: {error.strerror}") from None
         self._file = os.fdopen(descriptor, "a", encoding="utf-8")

@@ -16,6 +16,7 @@ from pathlib import Path
 from types import TracebackType
 
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.plain_file import open_plain
 
 _UNSUPPORTED = {errno.ENOLCK, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS, errno.EINVAL}
 _MAX_HOLDER_BYTES = 4096
@@ -34,7 +35,8 @@ class DirectoryLock:
     Raises
     ------
     InputError
-        On entering, if another living process holds it; names that process and its host.
+        On entering, if another living process holds it, which is named with its host, or if a link or a pipe lies in
+        the place of the lock.
     """
 
     def __init__(self, directory: Path, name: str = ".lock") -> None:
@@ -57,7 +59,7 @@ class DirectoryLock:
     def _attempt(self) -> int:
         """Return a held descriptor, or -1 if the holder was just leaving and another attempt is due."""
         try:
-            descriptor = os.open(self.path, os.O_RDWR | os.O_CREAT | os.O_NOFOLLOW | os.O_CLOEXEC, 0o666)
+            descriptor = open_plain(self.path, os.O_RDWR)
         except OSError as error:
             raise InputError(f"cannot lock {self.path.parent}: {error.strerror or error}") from None
         try:
@@ -125,7 +127,7 @@ def _read_holder(descriptor: int) -> dict[str, object]:
 
 def _holder_of(path: Path) -> dict[str, object]:
     try:
-        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_CLOEXEC)
+        descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError:
         return {}
     try:

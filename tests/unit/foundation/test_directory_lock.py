@@ -131,15 +131,6 @@ def test_a_claim_is_taken_over_only_from_the_provably_dead(
     assert not claim.exists()
 
 
-def test_a_link_in_the_place_of_the_lock_is_refused(tmp_path: Path) -> None:
-    target = tmp_path / "precious"
-    target.write_text("keep")
-    (tmp_path / ".lock").symlink_to(target)
-    with pytest.raises(InputError, match="cannot lock"):
-        DirectoryLock(tmp_path).__enter__()
-    assert target.read_text() == "keep"
-
-
 def test_a_directory_that_cannot_be_written_is_told(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="cannot lock"):
         DirectoryLock(tmp_path / "nowhere").__enter__()
