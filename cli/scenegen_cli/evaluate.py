@@ -45,6 +45,7 @@ def run(arguments: Sequence[str]) -> int:
     need_torch()
     from scenegen_trainers.evaluation.evaluate import evaluate
     from scenegen_trainers.evaluation.report import as_json, write_report
+    from scenegen_trainers.evaluation.words import ANSWERS_HEAD, answer_rows
     from scenegen_trainers.models.checkpoint import read_checkpoint
     from scenegen_trainers.training.machine import Machine
     from scenegen_trainers.training.source import TrainingData
@@ -65,12 +66,7 @@ def run(arguments: Sequence[str]) -> int:
     if command.json:
         say_json(as_json(found))
         return 0
-    rows = [("network", found.report), *((name, trivial.report) for name, trivial in found.baselines.items())]
-    lines = [("", "RMSE [m]", "Rel", "delta1", "delta2", "delta3")]
-    for name, report in rows:
-        s = report.pooled
-        lines.append((name, f"{s.rmse_m:.3f}", *(f"{x:.3f}" for x in (s.rel, *s.delta))))  # type: ignore[arg-type]
-    say(table(lines))
+    say(table([ANSWERS_HEAD, *answer_rows(found, briefly=True)]))
     for path in paths:
         note(str(path))
     return 0

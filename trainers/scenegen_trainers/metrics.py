@@ -9,6 +9,7 @@ column.
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, field
 
@@ -45,6 +46,12 @@ class ValidDepth:
                 f"valid depth from {self.nearest_m:g} to {self.furthest_m:g} m is no range; "
                 "give 0 < nearest_m < furthest_m"
             )
+
+    @property
+    def ranges(self) -> tuple[tuple[float, float], ...]:
+        """Cut at `RANGES_M`: from and below a distance [m], near to far."""
+        cuts = [self.nearest_m, *(c for c in RANGES_M if self.nearest_m < c < self.furthest_m)]
+        return tuple(itertools.pairwise([*cuts, math.inf if self.beyond_as_furthest else self.furthest_m]))
 
 
 @dataclass(frozen=True)
@@ -138,15 +145,9 @@ class DepthMeter:
 
     def __init__(self, valid: ValidDepth | None = None) -> None:
         self.valid = ValidDepth() if valid is None else valid
-        cuts = [
-            self.valid.nearest_m,
-            *(c for c in RANGES_M if self.valid.nearest_m < c < self.valid.furthest_m),
-        ]
-        upper = math.inf if self.valid.beyond_as_furthest else self.valid.furthest_m
-        self._edges = [*cuts, upper]
         self._pooled, self._aligned = _Sums(), _Sums()
         self._images, self._images_aligned = _Sums(), _Sums()
-        self._ranges = [_Sums() for _ in cuts]
+        self._ranges = [_Sums() for _ in self.valid.ranges]
         self._skipped = self._missing = 0
 
     @property
@@ -184,7 +185,7 @@ class DepthMeter:
         self._pooled.add(terms)
         own = _own_scores(terms)
         self._images.add_scores(own)
-        for sums, low, high in zip(self._ranges, self._edges[:-1], self._edges[1:], strict=True):
+        for sums, (low, high) in zip(self._ranges, self.valid.ranges, strict=True):
             sums.add(terms[:, (truth >= low) & (truth < high)])
         aligned = self._terms(estimate * _median_scale(estimate[known], truth[known]), truth)
         self._aligned.add(aligned)
@@ -204,13 +205,13 @@ class DepthMeter:
                 f"no pixel with a true depth of {self.valid.nearest_m:g} to {self.valid.furthest_m:g} m in "
                 f"{self._skipped} images; check the units of the truth (metres) or widen the valid range"
             )
-        ranges = zip(self._edges[:-1], self._edges[1:], self._ranges, strict=True)
+        ranges = zip(self.valid.ranges, self._ranges, strict=True)
         return DepthReport(
             pooled=self._pooled.scores(),
             per_image=self._images.mean_scores(),
             pooled_aligned=self._aligned.scores(),
             per_image_aligned=self._images_aligned.mean_scores(),
-            by_range=tuple((low, high, s.scores() if s.count else None) for low, high, s in ranges),
+            by_range=tuple((low, high, s.scores() if s.count else None) for (low, high), s in ranges),
             images=self._images.count,
             skipped=self._skipped,
             pixels=self._pooled.count,

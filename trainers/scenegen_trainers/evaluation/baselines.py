@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from jaxtyping import Float32, Float64
 
 from scenegen_datasets.loader import PairDataset
+from scenegen_trainers.evaluation.judge import Judge, Standings
+from scenegen_trainers.metrics import ValidDepth
+
+CONSTANT, ROW_MEAN, PAINTED_ROW_MEAN = "constant", "row mean", "row mean, sky as cap"
+"""Their names in reports. The second is the hardest to beat where sky is left out, the third where it is judged."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,9 +41,9 @@ class Baselines:
             for mean in (self.row_m, self.painted_row_m)
         )
         return {
-            "constant": np.full(shape, self.constant_m, np.float32),
-            "row mean": rows,
-            "row mean, sky as cap": painted,
+            CONSTANT: np.full(shape, self.constant_m, np.float32),
+            ROW_MEAN: rows,
+            PAINTED_ROW_MEAN: painted,
         }
 
 
@@ -66,6 +72,24 @@ def fit_baselines(training: PairDataset, cap_m: float) -> Baselines:
         return Baselines(cap_m, rows, painted)
     middle = int(np.searchsorted(np.cumsum(histogram), 0.5 * histogram.sum()))
     return Baselines((middle + 0.5) * cap_m / _BINS, rows, painted)
+
+
+def trivial_answers(root: Path, valid: ValidDepth) -> dict[str, Float32[np.ndarray, "rows columns"]]:
+    """Each baseline's answer to every image of a dataset, by name; none where the dataset has no training split."""
+    training = PairDataset(root, "train", ("depth",))
+    if len(training) == 0:
+        return {}
+    return fit_baselines(training, valid.furthest_m).answers(training[0]["depth"].shape)
+
+
+def judge_baselines(root: Path, split: str, valid: ValidDepth) -> dict[str, Standings]:
+    """Scores of each baseline over a whole split, by name."""
+    rivals = trivial_answers(root, valid)
+    judges = {name: Judge(valid, stratified=False) for name in rivals}
+    for sample in PairDataset(root, split, ("depth",)) if rivals else ():
+        for name, answer in rivals.items():
+            judges[name].add(answer, sample["depth"], sample)
+    return {name: judge.standings() for name, judge in judges.items()}
 
 
 _BINS = 4000

@@ -1,39 +1,43 @@
-"""Judge a network on a split: pooled and per image, aligned and not, by range, map, hour and class, with intervals."""
+"""Judge a network on a split, beside answers that look at no image."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from jaxtyping import Float32
-
 from scenegen.foundation.errors import InputError
-from scenegen.foundation.rng import stream
 from scenegen_datasets.loader import PairDataset
 from scenegen_trainers.evaluation.answers import answers
-from scenegen_trainers.evaluation.baselines import fit_baselines
-from scenegen_trainers.evaluation.bootstrap import Judged, intervals
-from scenegen_trainers.evaluation.strata import by_class, strata_of
-from scenegen_trainers.metrics import DepthMeter, DepthReport, DepthScores, ValidDepth
+from scenegen_trainers.evaluation.baselines import trivial_answers
+from scenegen_trainers.evaluation.bootstrap import Interval
+from scenegen_trainers.evaluation.judge import PAINTED, WHOLE, Judge, Margins, Standings, clip_of
+from scenegen_trainers.evaluation.trend import Trend, TrendMeter
+from scenegen_trainers.metrics import DepthReport, DepthScores, ValidDepth
 from scenegen_trainers.models.checkpoint import Checkpoint
-from scenegen_trainers.training.samples import Samples, spread
+from scenegen_trainers.training.samples import Samples
 from scenegen_trainers.training.source import TrainingData
+
+NETWORK = "network"
+"""Its name among the contenders."""
 
 
 @dataclass(frozen=True)
-class Trivial:
-    """Scores of an answer that looks at no image.
+class Judged:
+    """One image.
 
     Attributes
     ----------
-    report, painted : DepthReport
-        As in `Evaluation`.
+    index : int
+        Of the sample in its split.
+    key, clip : str
+    scores : DepthScores
     """
 
-    report: DepthReport
-    painted: DepthReport
+    index: int
+    key: str
+    clip: str
+    scores: DepthScores
 
 
 @dataclass(frozen=True)
@@ -46,57 +50,44 @@ class Evaluation:
         Of the checkpoint.
     dataset : mapping of str to str
     split : str
-    report : DepthReport
-        Sky and everything beyond the cap left out.
-    painted : DepthReport
-        With sky and everything beyond judged as if it stood at the cap: a depth picture as a picture.
-    interval : mapping of str to (float, float)
-        Bootstrap over clips, 95 %, of ``report.pooled``.
-    strata : mapping of str to DepthReport
-        By map, day and night, class.
-    baselines : mapping of str to Trivial
-        Answers that look at no image, on the same pixels.
-    images : tuple of (str, Judged)
-        Key and scores of each image that has valid pixels.
-    cap_m : float
-        Where the valid range ends [m].
+    valid : ValidDepth
+        Pixels that count.
+    network : mapping of str to Standing
+        Its scores by stratum.
+    baselines : mapping of str to (mapping of str to Standing)
+        Those of each answer that looks at no image, on the same pixels.
+    margins : mapping of str to (mapping of str to (mapping of str to (float, float)))
+        By how much the network is better than each of these, by stratum and score.
+    trends : mapping of str to Trend
+        Answers by true depth: of the network and of each baseline.
+    images : tuple of Judged
+        Each image that has valid pixels.
     """
 
     record: Mapping[str, Any]
     dataset: Mapping[str, str]
     split: str
-    report: DepthReport
-    painted: DepthReport
-    interval: Mapping[str, tuple[float, float]]
-    strata: Mapping[str, DepthReport]
-    baselines: Mapping[str, Trivial]
-    images: tuple[tuple[str, Judged], ...]
-    cap_m: float
-
-
-@dataclass
-class _Meters:
-    """One for each thing that is asked."""
-
     valid: ValidDepth
-    whole: DepthMeter = field(init=False)
-    painted: DepthMeter = field(init=False)
-    strata: dict[str, DepthMeter] = field(default_factory=dict)
+    network: Standings
+    baselines: Mapping[str, Standings]
+    margins: Mapping[str, Margins]
+    trends: Mapping[str, Trend]
+    images: tuple[Judged, ...]
 
-    def __post_init__(self) -> None:
-        near, far = self.valid.nearest_m, self.valid.furthest_m
-        self.whole = DepthMeter(self.valid)
-        self.painted = DepthMeter(ValidDepth(near, far, beyond_as_furthest=True))
+    @property
+    def report(self) -> DepthReport:
+        """Sky and everything beyond the cap left out."""
+        return self.network[WHOLE].report
 
-    def add(
-        self, estimate_m: Float32[np.ndarray, "rows columns"], truth_m: Float32[np.ndarray, "rows columns"]
-    ) -> DepthScores | None:
-        """Judge an image both ways; returns its scores with sky left out."""
-        self.painted.add(estimate_m, truth_m)
-        return self.whole.add(estimate_m, truth_m)
+    @property
+    def painted(self) -> DepthReport:
+        """Sky and everything beyond judged as if it stood at the cap."""
+        return self.network[PAINTED].report
 
-    def stratum(self, name: str) -> DepthMeter:
-        return self.strata.setdefault(name, DepthMeter(self.valid))
+    @property
+    def interval(self) -> Mapping[str, Interval]:
+        """Of the pooled scores of `report`, 95 %."""
+        return self.network[WHOLE].interval
 
 
 def evaluate(
@@ -134,47 +125,31 @@ def evaluate(
     samples = Samples(data.root, split, network.inputs, pairs)
     facts = _facts(data, split, thorough)
     valid = ValidDepth(furthest_m=network.target.cap_m)
-    meters = _Meters(valid)
-    images: list[tuple[str, Judged]] = []
+    rivals = trivial_answers(data.root, valid) if thorough else {}
+    judges = {name: Judge(valid, stratified=thorough) for name in (NETWORK, *rivals)}
+    trends = {name: TrendMeter(valid) for name in judges}
+    images: list[Judged] = []
     for answer in answers(network.metres, samples, device):
-        index = int(samples.index[answer.position])
+        index, truth = int(samples.index[answer.position]), answer.truth_m
         sample = facts[index]
-        scores = meters.add(answer.estimate_m, answer.truth_m)
-        if scores is not None:
-            pixels = int(((answer.truth_m >= valid.nearest_m) & (answer.truth_m < valid.furthest_m)).sum())
-            clip = f"{sample['map']}-{sample['world']}/{sample['clip']}"
-            images.append((str(sample["key"]), Judged(index, clip, pixels, scores)))
-        if thorough:
-            _stratify(meters, sample, answer.estimate_m, answer.truth_m)
+        for name, estimate in ((NETWORK, answer.estimate_m), *rivals.items()):
+            scores = judges[name].add(estimate, truth, sample)
+            trends[name].add(estimate, truth)
+            if name == NETWORK and scores is not None:
+                images.append(Judged(index, str(sample["key"]), clip_of(sample), scores))
         watch(answer.position + 1, len(samples))
-    report = meters.whole.report()
+    standings = {name: judge.standings() for name, judge in judges.items()}
     return Evaluation(
         record=checkpoint.record,
         dataset=data.record(),
         split=split,
-        report=report,
-        painted=meters.painted.report(),
-        interval=intervals([judged for _, judged in images], stream(0, "bootstrap")),
-        strata={n: m.report() for n, m in sorted(meters.strata.items()) if m.pixels},
-        baselines=judge_baselines(data, split, pairs, valid) if thorough else {},
+        valid=valid,
+        network=standings[NETWORK],
+        baselines={name: standings[name] for name in rivals},
+        margins={name: judges[NETWORK].margins(judges[name]) for name in rivals},
+        trends={name: meter.trend() for name, meter in trends.items()},
         images=tuple(images),
-        cap_m=valid.furthest_m,
     )
-
-
-def judge_baselines(data: TrainingData, split: str, pairs: int, valid: ValidDepth) -> dict[str, Trivial]:
-    """Trivial answers, learned from the training split, on the same pixels."""
-    training = PairDataset(data.root, "train", ("depth",))
-    if len(training) == 0:
-        return {}
-    baselines = fit_baselines(training, valid.furthest_m)
-    judged = PairDataset(data.root, split, ("depth",))
-    meters: dict[str, _Meters] = {}
-    for index in spread(len(judged), pairs).tolist():
-        truth = judged[index]["depth"]
-        for name, answer in baselines.answers(truth.shape).items():
-            meters.setdefault(name, _Meters(valid)).add(answer, truth)
-    return {name: Trivial(m.whole.report(), m.painted.report()) for name, m in meters.items()}
 
 
 def check_frames(checkpoint: Checkpoint, data: TrainingData) -> None:
@@ -203,16 +178,3 @@ def _facts(data: TrainingData, split: str, thorough: bool) -> PairDataset:
     if thorough and "semantic" in data.layers:
         return PairDataset(data.root, split, ("semantic",))
     return PairDataset(data.root, split, ())
-
-
-def _stratify(
-    meters: _Meters,
-    sample: Mapping[str, Any],
-    estimate_m: Float32[np.ndarray, "rows columns"],
-    truth_m: Float32[np.ndarray, "rows columns"],
-) -> None:
-    for name in strata_of(sample):
-        meters.stratum(name).add(estimate_m, truth_m)
-    if "semantic" in sample:
-        for name, truth in by_class(truth_m, sample["semantic"]):
-            meters.stratum(name).add(estimate_m, truth)

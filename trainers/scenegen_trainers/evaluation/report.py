@@ -1,19 +1,22 @@
-"""An evaluation on disk: JSON for machines, Markdown for people, sheets of the best and the worst answers."""
+"""An evaluation on disk: a page and Markdown for people, JSON for machines, sheets of the best and worst answers."""
 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.atomic import make_directories, write_atomic
 from scenegen.foundation.canonical import pretty
+from scenegen_trainers.evaluation import words
 from scenegen_trainers.evaluation.answers import Answer, answers
-from scenegen_trainers.evaluation.bootstrap import Judged, named
-from scenegen_trainers.evaluation.evaluate import Evaluation
+from scenegen_trainers.evaluation.evaluate import Evaluation, Judged
+from scenegen_trainers.evaluation.judge import PAINTED, WHOLE, Standing, Standings
+from scenegen_trainers.evaluation.page import page
 from scenegen_trainers.evaluation.pictures import answer_sheet
-from scenegen_trainers.metrics import DepthReport, DepthScores
+from scenegen_trainers.evaluation.scores import NAMES, head_of, markdown, named
+from scenegen_trainers.metrics import DepthReport
 from scenegen_trainers.models.checkpoint import Checkpoint
 from scenegen_trainers.training.samples import Samples
 from scenegen_trainers.training.source import TrainingData
@@ -21,20 +24,22 @@ from scenegen_trainers.training.source import TrainingData
 SHOWN = 6
 """Answers on a sheet."""
 
-HEAD = ("", "RMSE [m]", "Rel", "δ1", "δ2", "δ3", "pixels")
-
 
 def write_report(
     evaluation: Evaluation, checkpoint: Checkpoint, data: TrainingData, out: Path
 ) -> tuple[Path, ...]:
-    """Write ``evaluation.json``, ``evaluation.md``, ``best.png`` and ``worst.png``; returns their paths."""
+    """Write ``evaluation.html``, ``.md`` and ``.json``, ``best.png`` and ``worst.png``; returns their paths."""
     root = make_directories(out.parent, out.name)
-    ranked = sorted(evaluation.images, key=lambda image: (image[1].scores.rel, image[0]))
+    ranked = sorted(evaluation.images, key=lambda image: (image.scores.rel, image.key))
+    best, worst = (
+        _answered(_one_per_clip(some), evaluation, checkpoint, data) for some in (ranked, ranked[::-1])
+    )
     files = {
-        "evaluation.json": pretty(as_json(evaluation)),
+        "evaluation.html": page(evaluation, best, worst).encode(),
         "evaluation.md": as_markdown(evaluation).encode(),
-        "best.png": _sheet("Best answers", _one_per_clip(ranked), evaluation, checkpoint, data),
-        "worst.png": _sheet("Worst answers", _one_per_clip(ranked[::-1]), evaluation, checkpoint, data),
+        "evaluation.json": pretty(as_json(evaluation)),
+        "best.png": _sheet("Best answers", best, evaluation),
+        "worst.png": _sheet("Worst answers", worst, evaluation),
     }
     for name, content in files.items():
         write_atomic(root / name, content)
@@ -49,11 +54,22 @@ def as_json(evaluation: Evaluation) -> dict[str, Any]:
         "split": evaluation.split,
         "scores": report_json(evaluation.report),
         "painted": report_json(evaluation.painted),
-        "interval_95": {name: list(span) for name, span in evaluation.interval.items()},
-        "strata": {name: report_json(report) for name, report in evaluation.strata.items()},
+        "interval_95": _spans(evaluation.network[WHOLE]),
+        "strata": _strata_json(evaluation.network),
         "baselines": {
-            name: {**report_json(trivial.report), "painted": report_json(trivial.painted)}
-            for name, trivial in evaluation.baselines.items()
+            name: {
+                **report_json(standings[WHOLE].report),
+                "painted": report_json(standings[PAINTED].report),
+                "interval_95": _spans(standings[WHOLE]),
+                "strata": _strata_json(standings),
+            }
+            for name, standings in evaluation.baselines.items()
+        },
+        "better_by_95": {
+            name: {
+                stratum: {s: list(span) for s, span in spans.items()} for stratum, spans in margins.items()
+            }
+            for name, margins in evaluation.margins.items()
         },
     }
 
@@ -80,71 +96,73 @@ def report_json(report: DepthReport) -> dict[str, Any]:
     }
 
 
+def _strata_json(standings: Standings) -> dict[str, Any]:
+    return {
+        name: {**report_json(standing.report), "interval_95": _spans(standing)}
+        for name, standing in standings.items()
+        if name not in (WHOLE, PAINTED)
+    }
+
+
+def _spans(standing: Standing) -> dict[str, list[float]]:
+    return {name: list(span) for name, span in standing.interval.items()}
+
+
 def as_markdown(evaluation: Evaluation) -> str:
     """A page."""
-    report, record = evaluation.report, evaluation.record
-    low, high = evaluation.interval["rmse_m"], evaluation.interval["rel"]
-    lines = [
-        f"# {record.get('model', 'network')}, seed {record.get('seed', '?')}, on {evaluation.split}",
-        "",
-        f"{report.images} images of {evaluation.dataset['name']} {evaluation.dataset['version']}, "
-        f"{report.skipped} without a valid pixel, {report.missing} pixels without an answer. Sky is judged only in "
-        "the row that says so. Intervals (95 %, drawn by clip): "
-        f"RMSE {low[0]:.2f} to {low[1]:.2f} m, Rel {high[0]:.3f} to {high[1]:.3f}.",
-        "",
-        *_rows([("pooled", report.pooled, report.pixels), *_ways(report)]),
-        *_rows([("sky as cap, pooled", evaluation.painted.pooled, evaluation.painted.pixels)], head=False),
-        "",
-        "## By distance",
-        "",
-        *_rows((f"{a:g} to {b:g} m", scores, None) for a, b, scores in report.by_range if scores),
-    ]
-    if evaluation.baselines:
-        lines += ["", "## Trivial answers", ""]
-        lines += _rows((n, t.report.pooled, t.report.pixels) for n, t in evaluation.baselines.items())
-    if evaluation.strata:
-        lines += ["", "## By map, hour and class", ""]
-        lines += _rows((n, r.pooled, r.pixels) for n, r in evaluation.strata.items())
-    return "\n".join([*lines, "", "![best](best.png) ![worst](worst.png)", ""])
+    whole = evaluation.network[WHOLE]
+    parts = [f"# {words.title(evaluation)}", words.about(evaluation)]
+    parts += [f"**{said}**" for said in words.warnings(evaluation)]
+    parts += [words.note(evaluation), markdown(words.ANSWERS_HEAD, words.answer_rows(evaluation))]
+    spans = (f"{head_of(name)} {words.interval_words(whole.interval[name], name)}" for name in NAMES)
+    parts.append(f"95 % intervals of the first line: {', '.join(spans)}.")
+    for heading, names in words.families(evaluation):
+        parts += [f"## {heading}", _strata_table(evaluation, names)]
+    return "\n\n".join([*parts, "![best](best.png) ![worst](worst.png)"]) + "\n"
 
 
-def _ways(report: DepthReport) -> Sequence[tuple[str, DepthScores, int | None]]:
-    return (
-        ("mean over images", report.per_image, None),
-        ("pooled, median-aligned", report.pooled_aligned, None),
-        ("mean over images, median-aligned", report.per_image_aligned, None),
-    )
+def _strata_table(evaluation: Evaluation, names: Mapping[str, str]) -> str:
+    """Network with intervals, and the trivial answer that is hardest to beat."""
+    heads = [head_of(score) for score in words.TOLD]
+    rivals = [r for r in [words.rival_of(evaluation, next(iter(names)))] if r is not None]
+    rows = []
+    for name, said in names.items():
+        spans = evaluation.network[name].interval
+        ours = [
+            f"{words.value_of(evaluation.network, name, s)} ({words.interval_words(spans[s], s)})"
+            for s in words.TOLD
+        ]
+        theirs = [
+            f"{words.value_of(evaluation.baselines[r], name, s)} ({words.verdict(evaluation.margins[r][name][s])})"
+            for r in rivals
+            for s in words.TOLD
+        ]
+        rows.append([said, f"{words.pixels(evaluation, name):,}", *ours, *theirs])
+    return markdown(["", "pixels", *heads, *(f"{r}'s {head}" for r in rivals for head in heads)], rows)
 
 
-def _rows(rows: Iterable[tuple[str, DepthScores, int | None]], *, head: bool = True) -> list[str]:
-    lines = [f"| {' | '.join(HEAD)} |", f"|{'---|' * len(HEAD)}"] if head else []
-    for name, scores, pixels in rows:
-        cells = [f"{scores.rmse_m:.3f}", *(f"{x:.3f}" for x in (scores.rel, *scores.delta))]
-        lines.append(f"| {name} | {' | '.join(cells)} | {'' if pixels is None else f'{pixels:,}'} |")
-    return lines
-
-
-def _one_per_clip(ranked: Sequence[tuple[str, Judged]]) -> list[tuple[str, Judged]]:
+def _one_per_clip(ranked: Sequence[Judged]) -> list[Judged]:
     """The first of each clip: neighbours on a flight look alike."""
-    first: dict[str, tuple[str, Judged]] = {}
-    for key, judged in ranked:
-        first.setdefault(judged.group, (key, judged))
+    first: dict[str, Judged] = {}
+    for judged in ranked:
+        first.setdefault(judged.clip, judged)
     return list(first.values())[:SHOWN]
 
 
-def _sheet(
-    title: str,
-    ranked: Sequence[tuple[str, Judged]],
-    evaluation: Evaluation,
-    checkpoint: Checkpoint,
-    data: TrainingData,
-) -> bytes:
-    """Ask once more about a few images and draw the answers."""
+def _answered(
+    some: Sequence[Judged], evaluation: Evaluation, checkpoint: Checkpoint, data: TrainingData
+) -> list[tuple[Judged, Answer]]:
+    """Ask once more about a few images."""
     samples = Samples(data.root, evaluation.split, checkpoint.network.inputs)
-    some = samples.only([judged.index for _, judged in ranked])
-    rows: list[tuple[str, Answer]] = []
-    for (key, judged), answer in zip(ranked, answers(checkpoint.network.metres, some), strict=True):
-        rows.append((f"{key}  RMSE {judged.scores.rmse_m:.1f} m, Rel {judged.scores.rel:.2f}", answer))
+    asked = samples.only([judged.index for judged in some])
+    return list(zip(some, answers(checkpoint.network.metres, asked), strict=True))
+
+
+def _sheet(title: str, shown: Sequence[tuple[Judged, Answer]], evaluation: Evaluation) -> bytes:
+    rows = [
+        (f"{judged.key}  RMSE {judged.scores.rmse_m:.1f} m, Rel {judged.scores.rel:.2f}", answer)
+        for judged, answer in shown
+    ]
     buffer = io.BytesIO()
-    answer_sheet(title, rows, checkpoint.network.target.cap_m).save(buffer, "PNG")
+    answer_sheet(title, rows, evaluation.valid.furthest_m).save(buffer, "PNG")
     return buffer.getvalue()

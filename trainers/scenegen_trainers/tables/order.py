@@ -11,7 +11,8 @@ from typing import Literal
 
 from scipy.stats import t as student
 
-from scenegen_trainers.tables.paper import SMALLER_IS_BETTER, Relation
+from scenegen_trainers.evaluation.scores import SMALLER_IS_BETTER
+from scenegen_trainers.tables.paper import Relation
 
 Verdict = Literal["held", "open", "not held"]
 

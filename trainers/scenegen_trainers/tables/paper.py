@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from scenegen_trainers.evaluation.bootstrap import NAMES
+from scenegen_trainers.evaluation.scores import NAMES
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,3 @@ RELATIONS = (
     Relation("flow helps at w_L1 = 100", ("proposed-100",), ("conventional-100",)),
 )
 """What the paper's own figures support. They are not monotonic in w_L1 (Rel at 200), so no more is asked."""
-
-SMALLER_IS_BETTER = {"rmse_m": True, "rel": True, "delta1": False, "delta2": False, "delta3": False}
-"""Direction of each score."""

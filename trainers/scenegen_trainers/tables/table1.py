@@ -14,7 +14,8 @@ from scenegen.foundation.errors import InputError
 from scenegen.foundation.lock import DirectoryLock
 from scenegen.foundation.pool import Done, Failed, Note, Pool, Task
 from scenegen_datasets.resolve import Source
-from scenegen_trainers.evaluation.bootstrap import NAMES
+from scenegen_trainers.evaluation.baselines import PAINTED_ROW_MEAN, ROW_MEAN
+from scenegen_trainers.evaluation.scores import NAMES
 from scenegen_trainers.tables.names import SCORES
 from scenegen_trainers.tables.order import Found, judge
 from scenegen_trainers.tables.paper import RELATIONS, ROWS, Relation, Row
@@ -23,9 +24,9 @@ from scenegen_trainers.training.recipe import TrainingRecipe, resolve_training
 WORKER = "scenegen_trainers.tables.worker:worker"
 RUNS = "runs"
 TRIVIAL = {
-    "pooled": "row mean",
-    "pooled_aligned": "row mean",
-    "painted": "row mean, sky as cap",
+    "pooled": ROW_MEAN,
+    "pooled_aligned": ROW_MEAN,
+    "painted": PAINTED_ROW_MEAN,
 }
 """The answer without an image that a network has to beat, by kind of score: it knows where ground and sky are, on
 average."""

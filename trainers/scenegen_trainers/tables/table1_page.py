@@ -15,15 +15,12 @@ from scenegen_datasets.pages.document import document
 from scenegen_datasets.pages.markup import Html, element, text
 from scenegen_datasets.pages.tables import Column
 from scenegen_datasets.pages.tables import table as drawn
-from scenegen_trainers.evaluation.bootstrap import NAMES
+from scenegen_trainers.evaluation.scores import DIGITS, HEADS, NAMES, markdown, rounded
 from scenegen_trainers.tables.order import Found
 from scenegen_trainers.tables.paper import ROWS, Row
 from scenegen_trainers.tables.table1 import Table1
 
 STEM = "table1"
-
-_HEADS = ("RMSE [m]", "Rel", "δ1", "δ2", "δ3")
-_DIGITS = (2, 3, 3, 3, 3)
 
 NOTE = (
     "The paper's figures stand beside ours for their order, not for their size: it judged AirSim's pictures, its RMSE "
@@ -40,10 +37,9 @@ VERDICTS = (
 
 def write_table1(table: Table1, out: Path) -> tuple[Path, ...]:
     """Write ``table1.json``, ``table1.md`` and ``table1.html``; returns their paths."""
-    markdown = as_markdown(table)
     files = {
         f"{STEM}.json": pretty(as_json(table)),
-        f"{STEM}.md": markdown.encode(),
+        f"{STEM}.md": as_markdown(table).encode(),
         f"{STEM}.html": as_html(table).encode(),
     }
     for name, content in files.items():
@@ -98,12 +94,11 @@ Cells = Sequence[str]
 def _score_rows(table: Table1, kind: str) -> list[Cells]:
     rows: list[Cells] = []
     for row in ROWS:
-        ours = [_cell(table, row, name, digits, kind) for name, digits in zip(NAMES, _DIGITS, strict=True)]
+        ours = [_cell(table, row, name, digits, kind) for name, digits in zip(NAMES, DIGITS, strict=True)]
         paper = [f"{value:.3f}" for value in row.published]
         rows.append([row.method, f"{row.w_l1:g}", *ours, *paper])
     for name, scores in table.baselines.items():
-        cells = [f"{scores[kind][n]:.{d}f}" for n, d in zip(NAMES, _DIGITS, strict=True)]
-        rows.append([f"{name}, no image", "", *cells, *[""] * len(NAMES)])
+        rows.append([f"{name}, no image", "", *rounded(scores[kind]), *[""] * len(NAMES)])
     return rows
 
 
@@ -122,13 +117,13 @@ def _range_table(table: Table1) -> tuple[Cells, list[Cells]]:
     some = [k for k, part in enumerate(judged[0][1][0]["by_range"]) if part["scores"]]
     bounds = [judged[0][1][0]["by_range"][k] for k in some]
     names = [f"{b['from_m']:g} to {b['below_m']:g} m" for b in bounds]
-    head = ["", *(f"{score}, {name}" for name in names for score in _HEADS[:2])]
+    head = ["", *(f"{score}, {name}" for name in names for score in HEADS[:2])]
     rows: list[Cells] = []
     for label, runs in judged:
         cells = [
             _spread([float(run["by_range"][k]["scores"][score]) for run in runs], digits)
             for k in some
-            for score, digits in zip(NAMES[:2], _DIGITS[:2], strict=True)
+            for score, digits in zip(NAMES[:2], DIGITS[:2], strict=True)
         ]
         rows.append([label, *cells])
     return head, rows
@@ -144,7 +139,7 @@ def _verdict(found: Found) -> str:
     return f"{found.verdict} ({found.margin:+.3f})"
 
 
-_SCORE_HEAD = ("method", "w_L1", *_HEADS, *(f"paper's {head.removesuffix(' [m]')}" for head in _HEADS))
+_SCORE_HEAD = ("method", "w_L1", *HEADS, *(f"paper's {head.removesuffix(' [m]')}" for head in HEADS))
 _SECTIONS = (
     ("", "pooled"),
     ("Sky and everything beyond judged as if it stood at the cap, as in a depth picture", "painted"),
@@ -169,16 +164,12 @@ def as_markdown(table: Table1) -> str:
     parts = [f"# {_title(table)}", _about(table), NOTE]
     for heading, kind in _SECTIONS:
         parts += [f"## {heading}"] if heading else []
-        parts.append(_markdown(_SCORE_HEAD, _score_rows(table, kind)))
-    parts += ["## By true distance", _markdown(*_range_table(table))]
+        parts.append(markdown(_SCORE_HEAD, _score_rows(table, kind)))
+    parts += ["## By true distance", markdown(*_range_table(table))]
     for heading, found in _judgements(table):
-        parts += [f"## {heading}", _markdown(("claim", *_HEADS), _relation_rows(found))]
+        parts += [f"## {heading}", markdown(("claim", *HEADS), _relation_rows(found))]
     parts.append(VERDICTS)
     return "\n\n".join(parts) + "\n"
-
-
-def _markdown(head: Cells, rows: Sequence[Cells]) -> str:
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in (head, ["---"] * len(head), *rows))
 
 
 def as_html(table: Table1) -> str:
@@ -193,7 +184,7 @@ def as_html(table: Table1) -> str:
         parts.append(_html(_SCORE_HEAD, _score_rows(table, kind)))
     parts += [element("h2", "By true distance"), _html(*_range_table(table))]
     for heading, found in _judgements(table):
-        parts += [element("h2", heading), _html(("claim", *_HEADS), _relation_rows(found))]
+        parts += [element("h2", heading), _html(("claim", *HEADS), _relation_rows(found))]
     parts.append(element("p", VERDICTS, class_="small"))
     return document(_title(table), *parts)
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from scenegen_trainers.campaign.statistics import Paired, Rate
 from scenegen_trainers.campaign.summary import KINDS, Line, Spread
+from scenegen_trainers.evaluation.scores import markdown
 from scenegen_trainers.tables.entrants import Entrant
 from scenegen_trainers.tables.table2 import BOUNDS, Table2
 from scenegen_trainers.tables.table2_paper import (
@@ -186,13 +187,9 @@ def hit_words(line: Line) -> str:
 def as_markdown(table: Table2) -> str:
     """A page."""
     parts = [f"# {title(table)}", about(table), *(f"**{said}**" for said in warnings(table))]
-    parts += [_markdown(MAIN_HEAD, main_rows(table)), NOTE, AVERAGES]
-    parts += ["## How flights ended", _markdown(ENDS_HEAD, end_rows(table))]
+    parts += [markdown(MAIN_HEAD, main_rows(table)), NOTE, AVERAGES]
+    parts += ["## How flights ended", markdown(ENDS_HEAD, end_rows(table))]
     return "\n\n".join(parts) + "\n"
-
-
-def _markdown(head: Cells, rows: Sequence[Cells]) -> str:
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in (head, ["---"] * len(head), *rows))
 
 
 def _network(entrant: Entrant) -> str:

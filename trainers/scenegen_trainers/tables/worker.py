@@ -8,9 +8,11 @@ from typing import Any
 
 from scenegen.foundation.atomic import write_atomic
 from scenegen.foundation.canonical import pretty
-from scenegen_trainers.evaluation.bootstrap import named
-from scenegen_trainers.evaluation.evaluate import evaluate, judge_baselines
+from scenegen_trainers.evaluation.baselines import judge_baselines
+from scenegen_trainers.evaluation.evaluate import evaluate
+from scenegen_trainers.evaluation.judge import PAINTED, WHOLE
 from scenegen_trainers.evaluation.report import report_json
+from scenegen_trainers.evaluation.scores import named
 from scenegen_trainers.metrics import ValidDepth
 from scenegen_trainers.models.checkpoint import read_checkpoint
 from scenegen_trainers.tables.names import SCORES
@@ -54,15 +56,15 @@ class _Trivial:
 
     def __call__(self, cap_m: float) -> dict[str, Any]:
         if cap_m not in self._scores:
-            found = judge_baselines(self._data, self._split, 0, ValidDepth(furthest_m=cap_m))
+            found = judge_baselines(self._data.root, self._split, ValidDepth(furthest_m=cap_m))
             self._scores[cap_m] = {
                 name: {
-                    "pooled": named(t.report.pooled),
-                    "pooled_aligned": named(t.report.pooled_aligned),
-                    "painted": named(t.painted.pooled),
-                    "by_range": report_json(t.report)["by_range"],
+                    "pooled": named(standings[WHOLE].report.pooled),
+                    "pooled_aligned": named(standings[WHOLE].report.pooled_aligned),
+                    "painted": named(standings[PAINTED].report.pooled),
+                    "by_range": report_json(standings[WHOLE].report)["by_range"],
                 }
-                for name, t in found.items()
+                for name, standings in found.items()
             }
         return self._scores[cap_m]
 
@@ -80,5 +82,5 @@ def _scores(model: Path, data: TrainingData, split: str, device: str, trivial: _
         "interval_95": {name: list(span) for name, span in evaluation.interval.items()},
         "pixels": report["pixels"],
         "images": report["images"],
-        "baselines": trivial(evaluation.cap_m),
+        "baselines": trivial(evaluation.valid.furthest_m),
     }
