@@ -17,7 +17,8 @@ from scenegen_cli.parse import HelpShown, parse
 class Merge:
     """Join datasets into a new one, with their splits and one index; the parts stay as they are.
 
-    They must agree on layers, image size, band, camera and conventions, and share no clip and no name of a world.
+    They must agree on layers, image size, band, camera and conventions, and no world may be in two of them. Where two
+    seeds have worlds of one name, these get new numbers.
     """
 
     out: Annotated[Path, tyro.conf.Positional]
@@ -52,7 +53,12 @@ def run(arguments: Sequence[str]) -> int:
         report = verify(command.out, workers, progress=meter.verified) if command.verify else None
     if command.json:
         findings = [] if report is None else [asdict(finding) for finding in report.findings]
-        facts = {"linked": merged.linked, "copied": merged.copied, "findings": findings}
+        facts = {
+            "linked": merged.linked,
+            "copied": merged.copied,
+            "world_offsets": dict(merged.offsets),
+            "findings": findings,
+        }
         say_json({**asdict(found), **facts, "verified": None if report is None else report.ok})
     else:
         splits = ", ".join(f"{count:,} {name}" for name, count in found.splits.items() if count)
@@ -61,6 +67,10 @@ def run(arguments: Sequence[str]) -> int:
         )
         say(f"{command.out}: {found.pairs:,} pairs ({splits}), {size(found.bytes)}{checked}")
         say(f"{merged.linked:,} shards linked, {merged.copied:,} copied; content {found.content_id[:16]}")
+        for seed, offset in sorted(merged.offsets.items()):
+            say(
+                f"worlds of seed {seed} are numbered from {offset} on, for other seeds have worlds of the same names"
+            )
     if report is not None and not report.ok:
         note(f"verify found: {report.findings[0]}")
         return 1

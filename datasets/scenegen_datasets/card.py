@@ -8,6 +8,7 @@ from typing import Any
 
 from scenegen_datasets.job import SPLITS
 from scenegen_datasets.licence import hub_lines, licence_of, licence_url
+from scenegen_datasets.splits.held_out import HeldOut
 
 _HUB_SPLITS = {"train": "train", "val": "validation", "test": "test"}
 _SIZES = ((1_000, "n<1K"), (10_000, "1K<n<10K"), (100_000, "10K<n<100K"), (1_000_000, "100K<n<1M"))
@@ -120,7 +121,10 @@ def _composition(d: Mapping[str, Any]) -> list[str]:
         "|---|---|---|---|",
         *splits,
         "",
-        "Splits share no world. Ranges over the clips:",
+        *_split_rule(d),
+        "",
+        *_parts(d),
+        "Ranges over the clips:",
         "",
         "| quantity | smallest | largest |",
         "|---|---|---|",
@@ -129,6 +133,55 @@ def _composition(d: Mapping[str, Any]) -> list[str]:
         *(missing if d["missing"] else []),
         "It holds no personal data: people in it are figures without faces or names.",
     ]
+
+
+def _split_rule(d: Mapping[str, Any]) -> list[str]:
+    """What keeps the splits apart: worlds, and what only the test split may show."""
+    rule = d["split_rule"]
+    val, test = (" and ".join(map(str, rule[split])) for split in ("val", "test"))
+    held = HeldOut.of_statement(rule["held_out_for_test"]).words
+    lines = [
+        f"Splits share no world: of every {rule['period']} worlds of a map, number {val} is for validation, number "
+        f"{test} for test, the rest for training."
+    ]
+    if not held:
+        return [*lines, "Hours, weather and maps of all splits are drawn alike; none is kept for testing."]
+    return [
+        *lines,
+        "Held out, so that no clip for training or validation shows it and the test split measures what it costs:",
+        "",
+        *(f"* {words}" for words in held),
+        "",
+        "`clips.jsonl` says which test clips show what, by their hour, weather and map.",
+    ]
+
+
+def _parts(d: Mapping[str, Any]) -> list[str]:
+    """Datasets that were merged into this one."""
+    if not d["parts"]:
+        return []
+    rows = [
+        f"| {part['name']} | {part['version']} | {part['counts']['pairs']} | {_worlds(part)} | "
+        f"`{part['recipe_id'][:16]}` | `{part['content_id'][:16]}` |"
+        for part in d["parts"]
+    ]
+    return [
+        "It was merged of",
+        "",
+        "| dataset | version | pairs | worlds here | recipe | content |",
+        "|---|---|---|---|---|---|",
+        *rows,
+        "",
+    ]
+
+
+def _worlds(part: Mapping[str, Any]) -> str:
+    runs = [
+        f"{map} {first}" if first == last else f"{map} {first} to {last}"
+        for map, spans in part["worlds"].items()
+        for first, last in spans
+    ]
+    return ", ".join(runs)
 
 
 def _licence(d: Mapping[str, Any]) -> list[str]:

@@ -15,6 +15,7 @@ from scenegen_datasets.documents import DESCRIPTION
 from scenegen_datasets.job import SPLITS, ClipJob
 from scenegen_datasets.layers import LAYERS, MEMBERS
 from scenegen_datasets.licence import licence_of
+from scenegen_datasets.lock import SOURCE
 from scenegen_datasets.receipt import SCHEMA
 from scenegen_datasets.seal import check_seal, read_bounded, with_seal
 from scenegen_datasets.shape import misshapen
@@ -35,7 +36,7 @@ CONVENTIONS = {
 MAX_BYTES = 64 << 20
 """No sound ``dataset.json`` is larger."""
 
-_LOCK_ONLY = ("recipe", "scene_semantics", "software")
+_LOCK_ONLY = ("recipe", "scene_semantics", "software", SOURCE)
 """What a merged dataset's lock says of each part, and ``dataset.json`` need not repeat."""
 
 _RANGES = ("hour", "latitude_deg", "sun_elevation_deg", "speed_mps", "clearance_m")

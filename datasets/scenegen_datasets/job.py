@@ -9,7 +9,10 @@ SPLITS = ("train", "val", "test")
 """Names of the splits; the index stores positions in this tuple."""
 
 _MAP = re.compile(r"[a-z][a-z0-9_]{0,23}")
-_BOUNDS = (("ordinal", 0, 2**32 - 1), ("world", 0, 99_999), ("clip", 0, 999), ("pairs", 1, 9_998))
+MAX_WORLD = 99_999
+"""Largest number of a world: names have five digits for it."""
+
+_BOUNDS = (("ordinal", 0, 2**32 - 1), ("world", 0, MAX_WORLD), ("clip", 0, 999), ("pairs", 1, 9_998))
 
 
 def is_map_name(name: str) -> bool:

@@ -14,6 +14,9 @@ from scenegen_datasets.licence import KEY
 VOLATILE_KEYS = ("pairs", "out", "jobs", "engine", "part")
 """Top-level recipe keys that do not change any sample, hence not part of ``recipe_id``."""
 
+SOURCE = "source"
+"""Name in the lock of a sensed dataset for that of the dataset it was sensed from, as far as it decides samples."""
+
 _PACKAGES = {
     "numpy": "numpy",
     "cv2": "opencv-python-headless",

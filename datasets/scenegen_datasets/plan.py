@@ -27,9 +27,13 @@ def split_of(world: int, held_out: bool = False) -> str:
 
 
 def clips(
-    maps: Sequence[str], clips_per_world: int, pairs_per_clip: int, test_maps: Collection[str] = ()
+    maps: Sequence[str],
+    clips_per_world: int,
+    pairs_per_clip: int,
+    test_maps: Collection[str] = (),
+    first_world: int = 0,
 ) -> Iterator[ClipJob]:
-    """Yield all clips there will ever be, in plan order; maps take turns world by world.
+    """Yield all clips there will ever be from a world on, in plan order; maps take turns world by world.
 
     Parameters
     ----------
@@ -39,12 +43,21 @@ def clips(
         At least 1.
     test_maps : collection of str
         Maps that are held out for the test split.
+    first_world : int
+        Number of the first world of each map.
     """
     for ordinal in itertools.count():
         turn, clip = divmod(ordinal, clips_per_world)
-        world, which = divmod(turn, len(maps))
+        after, which = divmod(turn, len(maps))
+        world = first_world + after
         split = split_of(world, maps[which] in test_maps)
         yield ClipJob(ordinal, maps[which], world, clip, split, pairs_per_clip)
+
+
+def last_world(maps: int, clips_per_world: int, pairs_per_clip: int, pairs: int, first_world: int = 0) -> int:
+    """Largest number of a world in a plan of so many pairs."""
+    turns = -(-pairs // (pairs_per_clip * clips_per_world))
+    return first_world + (turns - 1) // maps
 
 
 def plan(
@@ -53,7 +66,9 @@ def plan(
     pairs_per_clip: int,
     pairs: int,
     test_maps: Collection[str] = (),
+    first_world: int = 0,
 ) -> tuple[ClipJob, ...]:
     """Clips that hold at least `pairs` pairs: the first ``ceil(pairs / pairs_per_clip)`` of `clips`."""
     count = -(-pairs // pairs_per_clip)
-    return tuple(itertools.islice(clips(maps, clips_per_world, pairs_per_clip, test_maps), count))
+    endless = clips(maps, clips_per_world, pairs_per_clip, test_maps, first_world)
+    return tuple(itertools.islice(endless, count))

@@ -16,8 +16,9 @@ from scenegen.maps.field.knobs import FieldKnobs
 from scenegen.maps.neighborhood.knobs import NeighborhoodKnobs
 from scenegen.maps.own_scene.knobs import OwnScene
 from scenegen.maps.registry import MAPS
-from scenegen_datasets.job import is_map_name
+from scenegen_datasets.job import MAX_WORLD, is_map_name
 from scenegen_datasets.layers import DEFAULT_LAYERS, check_layers
+from scenegen_datasets.plan import last_world
 from scenegen_datasets.resolve import Source, merge, resolve
 from scenegen_datasets.scenes import identified, name_scenes
 from scenegen_datasets.splits.knobs import SplitKnobs
@@ -52,6 +53,8 @@ class Recipe(Section):
     """Scenes of your own by name; a path among the maps enters itself here."""
     map: Names = ("city",)
     """Map families, own scenes by name or path; several take turns, world by world."""
+    first_world: Annotated[Count, Field(ge=0, le=MAX_WORLD)] = 0
+    """Number of the first world; with one seed, machines that begin at 0, 100, 200, ... make parts of one dataset."""
     clips_per_world: Annotated[Count, Field(ge=1, le=1000)] = 8
     """Flights through one world, each with its own weather and hour."""
     pairs_per_clip: Annotated[Count, Field(ge=1, le=9000)] = 64
@@ -134,12 +137,14 @@ class Recipe(Section):
         """Plain data of everything that decides samples; sections of maps that are not used are left out.
 
         Own scenes and recordings enter by their content, wherever their files lie. Splits enter if anything is held
-        out: without that, a recipe keeps the identity it had before there was such a section.
+        out, the first world if it is not 0: without, a recipe keeps the identity it had before there were such keys.
         """
         left_out: dict[str, Any] = {name: True for name in MAPS if name not in self.map}
         left_out |= {"scenes": True, "flight": {"recorded": {"file"}}}
         if self.splits == SplitKnobs():
             left_out["splits"] = True
+        if self.first_world == 0:
+            left_out["first_world"] = True
         plain = self.model_dump(mode="json", exclude=left_out)
         used = {name: {"sha256": scene.sha256} for name, scene in self.scenes.items() if name in self.map}
         return {**plain, "scenes": used} if used else plain
@@ -181,11 +186,29 @@ def settle_pairs(recipe: Recipe, pairs: int) -> tuple[Recipe, int]:
     Raises
     ------
     InputError
-        If `pairs` is not between 1 and 10^8.
+        If `pairs` is not between 1 and 10^8, or more than there are numbers for worlds.
     """
     if not 1 <= pairs <= MAX_PAIRS:
         raise InputError(f"--pairs {pairs}: ask for 1 to {MAX_PAIRS:,} pairs")
     if pairs < recipe.pairs_per_clip:
         return recipe.model_copy(update={"pairs_per_clip": pairs}), pairs
-    clips = -(-pairs // recipe.pairs_per_clip)
-    return recipe, clips * recipe.pairs_per_clip
+    whole = -(-pairs // recipe.pairs_per_clip) * recipe.pairs_per_clip
+    refuse_too_many_worlds(recipe, whole)
+    return recipe, whole
+
+
+def refuse_too_many_worlds(recipe: Recipe, pairs: int) -> None:
+    """Stop where a plan of so many pairs needs worlds beyond the largest number.
+
+    Raises
+    ------
+    InputError
+    """
+    last = last_world(
+        len(recipe.map), recipe.clips_per_world, recipe.pairs_per_clip, pairs, recipe.first_world
+    )
+    if last > MAX_WORLD:
+        raise InputError(
+            f"{pairs:,} pairs need worlds up to number {last:,}, and the largest is {MAX_WORLD:,}; raise "
+            "--clips-per-world or --pairs-per-clip"
+        )

@@ -71,8 +71,8 @@ class Job:
     def clips(self) -> tuple[ClipJob, ...]:
         """The plan, as far as it is to be made."""
         recipe = self.recipe
-        held = recipe.splits.test_maps
-        return plan(recipe.map, recipe.clips_per_world, recipe.pairs_per_clip, self.pairs, held)
+        held, first = recipe.splits.test_maps, recipe.first_world
+        return plan(recipe.map, recipe.clips_per_world, recipe.pairs_per_clip, self.pairs, held, first)
 
     @property
     def bytes(self) -> int:

@@ -12,7 +12,7 @@ from scenegen.foundation.errors import DatasetError, InputError, NoSpaceError
 from scenegen_datasets import documents
 from scenegen_datasets.inside import walk
 from scenegen_datasets.licence import KEY
-from scenegen_datasets.lock import stable
+from scenegen_datasets.lock import SOURCE, stable
 from scenegen_datasets.receipt import promised_size, receipt_paths, shard_of
 from scenegen_datasets.seal import read_bounded
 from scenegen_datasets.shape import misshapen
@@ -178,7 +178,10 @@ def _refuse_other_recipe(root: Path, old: Mapping[str, Any], new: Mapping[str, A
 
 
 def _joined(root: Path, old: Mapping[str, Any], new: Mapping[str, Any], allow_mixed: bool) -> dict[str, Any]:
-    """Return the lock to keep: the old one with the new number of pairs, and with what else rendered into it."""
+    """Return the lock to keep: the old one with the new number of pairs, and with what else rendered into it.
+
+    A sensed dataset takes over what its source, which may have grown, is made of now.
+    """
     joined = {
         **old,
         "recipe": {
@@ -186,8 +189,7 @@ def _joined(root: Path, old: Mapping[str, Any], new: Mapping[str, Any], allow_mi
             **({"pairs": new["recipe"]["pairs"]} if "pairs" in new["recipe"] else {}),
         },
     }
-    if KEY in new:
-        joined[KEY] = new[KEY]
+    joined |= {key: new[key] for key in (KEY, SOURCE) if key in new}
     known = [old["fingerprint"], *old["mixed_with"]]
     if new["fingerprint"] not in known:
         if not allow_mixed:

@@ -87,11 +87,10 @@ def _belongs(root: Path) -> set[str]:
 
 def _planned(root: Path) -> set[str] | None:
     """Receipts of the plan, if it can be told: a manifest with a flipped bit must not cost a sound one."""
-    from scenegen_datasets.repair.remake import plan_of, recipe_of
+    from scenegen_datasets.repair.again import planned
 
-    lock = read_lock(root)
     try:
-        return {clip.receipt for clip in plan_of(root, lock, recipe_of(root, lock)).clips}
+        return {clip.receipt for clip in planned(root, read_lock(root))}
     except InputError:
         return None
 

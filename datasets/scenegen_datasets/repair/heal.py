@@ -21,6 +21,7 @@ from scenegen_datasets.description import read_description
 from scenegen_datasets.inside import read_inside, sha256_inside
 from scenegen_datasets.manifest import read_manifest
 from scenegen_datasets.store import DATASET, LOCK, MANIFEST, RECIPE, RELEASES
+from scenegen_datasets.versions.merge import merged_yaml
 
 IRREPLACEABLE = (LOCK, RECIPE, RELEASES)
 
@@ -55,6 +56,9 @@ def rewrite_recipe(root: Path, lock: Mapping[str, Any]) -> bool:
     with contextlib.suppress(DatasetError):
         if sha256_inside(root, RECIPE) == told or told is None:
             return False
+    if lock.get("parts"):  # of a merged dataset it follows from the lock: nothing is lost
+        write_atomic(root / RECIPE, merged_yaml(lock))
+        return False
     plain = yaml.safe_dump(dict(lock["recipe"]), sort_keys=True, allow_unicode=True)
     write_atomic(
         root / RECIPE, f"# What was asked is lost; this is the recipe with every default.\n{plain}".encode()

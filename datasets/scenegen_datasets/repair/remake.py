@@ -1,4 +1,4 @@
-"""Make clips of a dataset again, from its lock alone, by the path on which they were made first."""
+"""Make rendered clips again, from a recipe alone, by the path on which they were made first."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scenegen.foundation.strict_yaml import read_mapping
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.lock import VOLATILE_KEYS, fingerprint, recipe_id
 from scenegen_datasets.probe import render_fingerprint
-from scenegen_datasets.recipe import SCENE_SEMANTICS, Recipe, resolve_recipe
+from scenegen_datasets.recipe import SCENE_SEMANTICS, Recipe, refuse_too_many_worlds, resolve_recipe
 from scenegen_datasets.render_job import Job
 from scenegen_datasets.resolve import Source
 from scenegen_datasets.run import Progress, make_clips
@@ -23,27 +23,29 @@ from scenegen_datasets.store import LOCK, RECIPE
 Told = Callable[[Progress], None]
 
 
-def recipe_of(root: Path, lock: Mapping[str, Any]) -> Recipe:
-    """The recipe a dataset was made with; own scenes and recordings are found where ``recipe.yaml`` says.
+def recipe_of(root: Path, entry: Mapping[str, Any], own: bool = True) -> Recipe:
+    """The recipe clips were rendered by; own scenes and recordings are found where ``recipe.yaml`` says.
+
+    Parameters
+    ----------
+    root : Path
+        The dataset.
+    entry : mapping
+        Its lock, or what that says of a dataset it was made from.
+    own : bool
+        Whether `entry` is the lock itself, to which ``recipe.yaml`` belongs.
 
     Raises
     ------
     InputError
         If this version of scenegen would make other samples of it, or a file it needs is not there.
     """
-    if lock.get("parts"):
-        raise InputError(f"{root} is merged from other datasets: repair those, and merge them again")
-    if "sensed" in lock["recipe"]:
+    if entry.get("scene_semantics") != SCENE_SEMANTICS:
         raise InputError(
-            f"{root} was sensed from another dataset: remove what is damaged, and run the same `scenegen sense` "
-            "command again"
-        )
-    if lock.get("scene_semantics") != SCENE_SEMANTICS:
-        raise InputError(
-            f"{root} was made when this recipe meant other scenes (version {lock.get('scene_semantics')}, this "
+            f"{root} was made when this recipe meant other scenes (version {entry.get('scene_semantics')}, this "
             f"scenegen makes {SCENE_SEMANTICS}); install the scenegen that made it (see {LOCK}, 'software')"
         )
-    plain = {key: value for key, value in lock["recipe"].items() if key not in VOLATILE_KEYS}
+    plain = {key: value for key, value in entry["recipe"].items() if key not in VOLATILE_KEYS}
     try:
         recipe = Recipe.model_validate(plain)
     except (ValidationError, InputError) as error:
@@ -51,9 +53,14 @@ def recipe_of(root: Path, lock: Mapping[str, Any]) -> Recipe:
             f"{root / LOCK}: not a recipe of this scenegen: {str(error).splitlines()[0]}"
         ) from None
     if _needs_files(recipe):
+        if not own:
+            raise InputError(
+                f"{root} needs scenes or recordings of your own, and only the dataset it was made from knows where "
+                "they lie; repair that one, then make this one again"
+            )
         asked = resolve_recipe([Source(str(root / RECIPE), read_mapping(root / RECIPE))])
         recipe = recipe.model_copy(update={"scenes": asked.scenes, "flight": asked.flight})
-    if recipe_id(recipe.canonical(), SCENE_SEMANTICS) != lock["recipe_id"]:
+    if recipe_id(recipe.canonical(), SCENE_SEMANTICS) != entry["recipe_id"]:
         raise InputError(
             f"{root}: this scenegen reads another recipe out of {LOCK} than the one that was rendered; install the "
             "scenegen that made it (see 'software' there)"
@@ -61,20 +68,31 @@ def recipe_of(root: Path, lock: Mapping[str, Any]) -> Recipe:
     return recipe
 
 
-def plan_of(root: Path, lock: Mapping[str, Any], recipe: Recipe, processes: int = 1) -> Job:
-    """The job that made a dataset; its `clips` are the plan.
+def job_of(
+    root: Path, entry: Mapping[str, Any], own: bool = True, into: Path | None = None, processes: int = 1
+) -> Job:
+    """The job that rendered a dataset; its `clips` are the plan.
+
+    Parameters
+    ----------
+    root, entry, own
+        As for `recipe_of`.
+    into : Path, optional
+        Directory to render into, instead of the dataset's own.
+    processes : int
 
     Raises
     ------
     InputError
-        If the lock does not say how many pairs there are to be.
+        As `recipe_of`, or if the lock does not say how many pairs there are to be.
     """
-    pairs = lock["recipe"].get("pairs")
+    recipe, pairs = recipe_of(root, entry, own), entry["recipe"].get("pairs")
     if type(pairs) is not int or not 1 <= pairs <= 10**8:
         raise InputError(
             f"{root / LOCK}: does not say how many pairs the dataset has; restore it from a copy"
         )
-    return Job(recipe=recipe, pairs=pairs, root=root, asked={}, processes=processes)
+    refuse_too_many_worlds(recipe, pairs)
+    return Job(recipe=recipe, pairs=pairs, root=into or root, asked={}, processes=processes)
 
 
 def fingerprint_here() -> dict[str, str]:
@@ -91,7 +109,7 @@ def fingerprint_here() -> dict[str, str]:
 def remake(
     job: Job, clips: Sequence[ClipJob], fingerprint: str, log_root: Path, told: Told
 ) -> dict[str, str]:
-    """Make clips of a plan again, below the job's directory; shards and receipts lie there as in a dataset.
+    """Render clips of a plan again, below the job's directory; shards and receipts lie there as in a dataset.
 
     Parameters
     ----------

@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from scenegen.foundation.errors import DatasetError, InputError
-from scenegen_datasets.inside import folder_inside, printable
+from scenegen.foundation.printable import printable
+from scenegen_datasets.inside import folder_inside
 
 _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 

@@ -73,7 +73,8 @@ def repair(
     Raises
     ------
     InputError
-        If there is no dataset, somebody writes to it, or this machine would render other bytes: with what differs.
+        If there is no dataset, somebody writes to it, this machine would render other bytes (with what differs), or
+        files of the user are needed that only a dataset it was made from knows.
     DatasetError
         If the lock itself is damaged, from which everything else follows.
     """
@@ -119,16 +120,15 @@ def _remake(
     root: Path, lock: Mapping[str, Any], found: Survey, processes: int, told: Told
 ) -> tuple[list[str], dict[str, str]]:
     """Render the broken clips beside the dataset, and let those that came out right take their places."""
-    from scenegen_datasets.repair.remake import fingerprint_here, plan_of, recipe_of, remake
+    from scenegen_datasets.repair.again import Again
+    from scenegen_datasets.repair.remake import fingerprint_here
 
-    recipe = recipe_of(root, lock)
     here = fingerprint_here()
     _refuse_other_software(root, lock, found, here)
     remove_inside(root, SCRATCH)
     scratch = make_directories(root, SCRATCH)
     try:
-        job = plan_of(scratch, lock, recipe, processes)
-        failed = remake(job, found.broken, fingerprint_id(here), root, told)
+        failed = Again(root, processes, fingerprint_id(here), root, told).make(lock, found.broken, scratch)
         remade = []
         for clip in found.broken:
             if clip.name in failed:

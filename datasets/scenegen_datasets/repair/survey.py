@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.errors import DatasetError, InputError
-from scenegen_datasets.inside import printable
+from scenegen.foundation.printable import printable
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.manifest import read_manifest
 from scenegen_datasets.receipt import read_receipt
@@ -60,8 +60,8 @@ def survey(root: Path, lock: Mapping[str, Any], checks: Sequence[ClipCheck]) -> 
     Raises
     ------
     InputError
-        If clips are broken or missing and the plan cannot be told, because the dataset was merged or its recipe is of
-        another version.
+        If clips are broken or missing and the plan cannot be told, because its recipe is of another version, or needs
+        files that cannot be found.
     """
     manifest = _manifest(root)
     sound = {c.job: c for c in checks if c.job is not None and not c.findings}
@@ -89,10 +89,10 @@ def _planned(
     manifest: Mapping[str, str],
 ) -> tuple[ClipJob, ...]:
     """The plan; what is there, where nothing is broken and only the rest is to be derived."""
-    from scenegen_datasets.repair.remake import plan_of, recipe_of
+    from scenegen_datasets.repair.again import planned
 
     try:
-        return plan_of(root, lock, recipe_of(root, lock)).clips
+        return planned(root, lock)
     except InputError as error:
         gone = sorted(p for p in manifest if _RECEIPT.fullmatch(p) and p not in {j.receipt for j in sound})
         bad = gone or sorted(c.receipt for c in checks if c.job not in sound)

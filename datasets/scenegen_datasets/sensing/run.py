@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import yaml
+from pydantic import ValidationError
 
 from scenegen.foundation.atomic import remove
 from scenegen.foundation.errors import DatasetError, InputError, NoSpaceError
@@ -20,16 +21,19 @@ from scenegen_datasets.info import DatasetInfo
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import DEFAULT_LAYERS
 from scenegen_datasets.licence import KEY
-from scenegen_datasets.lock import VOLATILE_KEYS, fingerprint, fingerprint_id, make_lock
+from scenegen_datasets.lock import SOURCE, VOLATILE_KEYS, fingerprint, fingerprint_id, make_lock
 from scenegen_datasets.pictures.preview import write_preview
 from scenegen_datasets.render_job import dataset_name
 from scenegen_datasets.run import WORKER_ENVIRONMENT
 from scenegen_datasets.sensing.camera import CameraKeys, NewCamera, new_camera
 from scenegen_datasets.sensing.film import Film, payload_of, setup_of
 from scenegen_datasets.source import open_source
-from scenegen_datasets.store import DATASET, MANIFEST, clean, create_or_open, finished, read_lock
+from scenegen_datasets.store import DATASET, LOCK, MANIFEST, clean, create_or_open, finished, read_lock
 
 WORKER = "scenegen_datasets.sensing.film:worker"
+
+_KEPT = ("recipe", "recipe_id", "scene_semantics", "parts", SOURCE)
+"""What the lock of a sensed dataset says of its source: all that is needed to make its radiance again."""
 
 Told = Callable[[int, int], None]
 
@@ -109,6 +113,43 @@ def sense_dataset(
         return Sensed(finish(out, jobs), chosen.side, len(missing))
 
 
+def film_again(
+    recipe: Mapping[str, Any],
+    source: Path,
+    out: Path,
+    clips: Sequence[ClipJob],
+    fingerprint: str,
+    processes: int = 1,
+) -> None:
+    """Sense clips as a dataset with this recipe holds them.
+
+    Parameters
+    ----------
+    recipe : mapping
+        Of a sensed dataset's lock.
+    source, out : Path
+        Directories laid out like datasets: where the radiance of these clips is, and where they are to be.
+    clips : sequence of ClipJob
+    fingerprint : str
+        Id for the receipts.
+    processes : int
+
+    Raises
+    ------
+    DatasetError
+        If the recipe makes no sense, or a clip's radiance is damaged.
+    """
+    told = recipe["sensed"]
+    try:
+        keys = CameraKeys.model_validate({"camera": recipe["camera"], "sensor": recipe["sensor"]})
+        side, seed = int(told["side_px"]), int(told["seed"])
+    except (ValidationError, InputError, KeyError, TypeError, ValueError):
+        raise DatasetError(f"{LOCK}: what it says of the camera makes no sense") from None
+    if clips:
+        film = Film(source, out, keys, side, seed, fingerprint)
+        _make(film, list(clips), len(clips), processes, lambda done, total: None)
+
+
 def _opened(source: Path) -> tuple[dict[str, Any], list[ClipJob]]:
     lock = read_lock(source)
     stored = open_source(source, allow_partial=False)
@@ -139,6 +180,7 @@ def _lock(old: Mapping[str, Any], chosen: NewCamera, seed: int, out: Path) -> di
         license=old.get(KEY),
     )
     others = [{**p, **ours} for p in old["mixed_with"]]
+    lock[SOURCE] = {name: old[name] for name in _KEPT if name in old}
     return {**lock, "mixed_with": [p for p in others if fingerprint_id(p) != lock["fingerprint_id"]]}
 
 

@@ -18,6 +18,9 @@ from scenegen_datasets.splits.held_out import HeldOut
 MAX_DRAWS = 1000
 """Draws until a clip is given up. Rarest is a held-out hour: one in a hundred draws for a quarter of an hour."""
 
+Clip = tuple[str, int, int]
+"""Map, world and clip: what conditions are drawn for."""
+
 
 def draw_conditions(
     climate: ClimateKnobs, held_out: HeldOut, season: Season, seed: int, job: ClipJob
@@ -43,16 +46,30 @@ def draw_conditions(
     RejectedDrawError
         If no draw of `MAX_DRAWS` will do.
     """
-    wanted = shows_held_out(job)
+    clip = (job.map, job.world, job.clip)
+    return draw_until(climate, held_out, season, seed, clip, shows_held_out(job))
+
+
+def draw_until(
+    climate: ClimateKnobs, held_out: HeldOut, season: Season, seed: int, clip: Clip, wanted: bool
+) -> tuple[Weather, float]:
+    """Draw weather and hour [h] until they are held out, if `wanted`, else until they are not.
+
+    Raises
+    ------
+    RejectedDrawError
+        As `draw_conditions`.
+    """
     for attempt in range(MAX_DRAWS):
         again = (attempt,) if attempt else ()
-        rng = stream(seed, "clip", job.map, job.world, job.clip, "weather", *again)
+        rng = stream(seed, "clip", *clip, "weather", *again)
         weather, hour = draw_weather_and_hour(climate, season, rng)
         if not held_out.conditions or bool(held_out.condition(hour, vars(weather))) == wanted:
             return weather, hour
     what = "what is held out" if wanted else "anything but what is held out"
+    map, world, number = clip
     raise RejectedDrawError(
-        f"{job.name}: the climate of this recipe draws {what} less than once in {MAX_DRAWS} times; "
+        f"{map}-{world:05d}-{number:03d}: the climate of this recipe draws {what} less than once in {MAX_DRAWS} times; "
         "hold out wider hours or other weather"
     )
 

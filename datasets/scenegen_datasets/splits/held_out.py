@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from scenegen.foundation.errors import DatasetError
+from scenegen_datasets.lock import SOURCE
 
 WEATHERS: Mapping[str, tuple[str, float, float]] = {
     "clear": ("cloud_fraction", 0.0, 0.25),
@@ -65,6 +66,26 @@ class HeldOut:
             "weather": {name: _definition(name) for name in self.weather},
         }
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        """All of it for people, one line each."""
+        kinds = []
+        for name in self.weather:
+            field, low, high = WEATHERS[name]
+            more = f"{low:g} or more" if high == float("inf") else f"from {low:g} to below {high:g}"
+            kinds.append(f"{name} weather: `{field}` {more}")
+        return (
+            *(f"map `{name}`: all of its worlds are for test" for name in self.maps),
+            *(f"hours {first:g} to {last:g}, in local mean solar time" for first, last in self.hours),
+            *kinds,
+        )
+
+    @classmethod
+    def of_statement(cls, statement: Mapping[str, Any]) -> HeldOut:
+        """Read what `statement` returned."""
+        spans = tuple((float(first), float(last)) for first, last in statement["hours"])
+        return cls(tuple(statement["maps"]), spans, tuple(statement["weather"]))
+
     @classmethod
     def of_recipe(cls, recipe: Mapping[str, Any]) -> HeldOut:
         """Read the ``splits`` section of a resolved recipe; without one nothing is held out.
@@ -92,18 +113,23 @@ class HeldOut:
     def of_lock(cls, lock: Mapping[str, Any]) -> HeldOut:
         """Of a dataset's lock: what its recipe holds out, or all that the parts of a merged dataset hold out.
 
+        A sensed dataset holds out what its source does.
+
         Raises
         ------
         DatasetError
             If the lock makes no sense there.
         """
-        parts = lock.get("parts") or [lock]
-        if not (isinstance(parts, list) and all(isinstance(part, dict) for part in parts)):
-            raise DatasetError("recipe.lock.json: its parts make no sense")
-        recipes = [part.get("recipe") for part in parts]
-        if not all(isinstance(recipe, dict) for recipe in recipes):
-            raise DatasetError("recipe.lock.json: a part has no recipe")
-        return cls.union(map(cls.of_recipe, recipes))
+        source, parts = lock.get(SOURCE), lock.get("parts")
+        if isinstance(source, dict):
+            return cls.of_lock(source)
+        if parts:
+            if not (isinstance(parts, list) and all(isinstance(part, dict) for part in parts)):
+                raise DatasetError("recipe.lock.json: its parts make no sense")
+            return cls.union(map(cls.of_lock, parts))
+        if not isinstance(lock.get("recipe"), dict):
+            raise DatasetError("recipe.lock.json: it, or a part, has no recipe")
+        return cls.of_recipe(lock["recipe"])
 
     @classmethod
     def union(cls, several: Iterable[HeldOut]) -> HeldOut:

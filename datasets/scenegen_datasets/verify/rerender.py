@@ -69,10 +69,10 @@ def rerender(
     InputError
         If there is no frame, or this scenegen would make other samples of the recipe.
     """
-    from scenegen_datasets.repair.remake import fingerprint_here, plan_of, recipe_of, remake
+    from scenegen_datasets.repair.again import Again
+    from scenegen_datasets.repair.remake import fingerprint_here
 
     lock = read_lock(root)
-    recipe = recipe_of(root, lock)
     receipts = [read_receipt(root, path) for path in receipt_paths(root)]
     chosen = _draw(receipts, count, seed)
     if not chosen:
@@ -82,8 +82,8 @@ def rerender(
     identical = 0
     with tempfile.TemporaryDirectory(prefix="scenegen-rerender-") as folder:
         scratch = Path(folder)
-        job = plan_of(scratch, lock, recipe, processes)
-        failed = remake(job, [r.clip.job for r, _ in chosen], here, scratch, told)
+        again = Again(root, processes, here, scratch, told)
+        failed = again.make(lock, [r.clip.job for r, _ in chosen], scratch)
         for old, frames in chosen:
             name = old.clip.job.name
             if name in failed:

@@ -9,18 +9,21 @@ from pathlib import Path
 from typing import Any
 
 from scenegen.foundation import canonical
-from scenegen.foundation.errors import DatasetError, InputError
+from scenegen.foundation.errors import InputError
 from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.licence import KEY, licence_of
-from scenegen_datasets.lock import fingerprint_id, recipe_id
+from scenegen_datasets.lock import SOURCE, fingerprint_id, recipe_id
 from scenegen_datasets.source import open_source
 from scenegen_datasets.splits.faults import clip_fault
 from scenegen_datasets.splits.held_out import HeldOut
 from scenegen_datasets.store import differing_keys, read_lock
+from scenegen_datasets.versions.numbers import KEY as OFFSET
+from scenegen_datasets.versions.numbers import Origin, World, offset_of, offsets, origin_of, seed_of, spans
 from scenegen_datasets.versions.state import finished_description, meaning_of, names_of
 
 _NAMED = 3
+_REMEDY = "render one of them with another --seed, or from another --first-world on"
 
 
 @dataclass(frozen=True)
@@ -34,12 +37,15 @@ class Part:
         Its ``recipe.lock.json`` and ``dataset.json``.
     clips : tuple of ClipRecord
         In its plan's order.
+    origins : tuple of Origin
+        Of each clip.
     """
 
     root: Path
     lock: Mapping[str, Any]
     description: Mapping[str, Any]
     clips: tuple[ClipRecord, ...]
+    origins: tuple[Origin, ...]
 
     @classmethod
     def read(cls, root: Path) -> Part:
@@ -58,13 +64,20 @@ class Part:
         for line in open_source(root, allow_partial=False).lines:
             facts = json.loads(line)
             clips.append(ClipRecord.from_dict({k: v for k, v in facts.items() if k in known}))
-        return cls(root, lock, description, tuple(clips))
+        return cls(root, lock, description, tuple(clips), tuple(origin_of(lock, c.job) for c in clips))
+
+    @property
+    def worlds(self) -> tuple[World, ...]:
+        """World of each clip."""
+        pairs = zip(self.clips, self.origins, strict=True)
+        return tuple((origin.seed, clip.job.map, origin.world) for clip, origin in pairs)
 
     def provenance(self) -> list[dict[str, Any]]:
         """What the merged dataset keeps of this one: one entry, or those of a merged dataset it is itself."""
         if self.lock.get("parts"):
             return [dict(part) for part in self.lock["parts"]]
         told = self.description
+        whence = {key: self.lock[key] for key in (SOURCE,) if key in self.lock}
         worlds: dict[str, set[int]] = {}
         for clip in self.clips:
             worlds.setdefault(clip.job.map, set()).add(clip.job.world)
@@ -76,17 +89,18 @@ class Part:
                 "content_id": told["content_id"],
                 "counts": told["counts"],
                 "missing": told["missing"],
-                "worlds": {map: _spans(sorted(found)) for map, found in sorted(worlds.items())},
+                "worlds": {map: spans(sorted(found)) for map, found in sorted(worlds.items())},
                 "recipe": self.lock["recipe"],
                 "scene_semantics": self.lock.get("scene_semantics"),
                 "software": self.lock.get("software"),
+                **whence,
             }
         ]
 
 
 @dataclass(frozen=True)
 class Piece:
-    """One clip of a merged dataset: where it comes from, and its place in the whole."""
+    """One clip of a merged dataset: where it comes from, and its name and place in the whole."""
 
     part: Part
     clip: ClipRecord
@@ -103,6 +117,7 @@ def check_parts(parts: Sequence[Part]) -> None:
     """
     if len(parts) < 2:
         raise InputError("name at least two datasets to merge")
+    _refuse_twins(parts)
     _refuse_disagreement(parts)
     _refuse_collisions(parts)
     held_out = HeldOut.union(HeldOut.of_lock(part.lock) for part in parts)
@@ -117,11 +132,17 @@ def check_parts(parts: Sequence[Part]) -> None:
 
 def pieces_of(parts: Sequence[Part]) -> list[Piece]:
     """All clips in the order of the merged dataset: by world, map and clip, whatever the order of the parts."""
+    added = offsets(world for part in parts for world in part.worlds)
     found = [
-        (clip.job.world, clip.job.map, clip.job.clip, part, clip) for part in parts for clip in part.clips
+        (number + added[seed], map, clip.job.clip, part, clip)
+        for part in parts
+        for clip, (seed, map, number) in zip(part.clips, part.worlds, strict=True)
     ]
     found.sort(key=lambda entry: entry[:3])
-    return [Piece(part, clip, replace(clip.job, ordinal=k)) for k, (*_, part, clip) in enumerate(found)]
+    return [
+        Piece(part, clip, replace(clip.job, ordinal=k, world=number))
+        for k, (number, _, _, part, clip) in enumerate(found)
+    ]
 
 
 def merged_lock(parts: Sequence[Part], name: str) -> dict[str, Any]:
@@ -130,7 +151,9 @@ def merged_lock(parts: Sequence[Part], name: str) -> dict[str, Any]:
     Its recipe holds what the recipes of all parts agree on, with all their maps, and the parts' recipe ids; each part's
     own recipe stands below ``parts``.
     """
-    entries = sorted((entry for part in parts for entry in part.provenance()), key=canonical.canonical)
+    added = offsets(world for part in parts for world in part.worlds)
+    entries = [_numbered(entry, added[seed_of(entry)]) for part in parts for entry in part.provenance()]
+    entries.sort(key=canonical.canonical)
     recipe = {
         **_common([entry["recipe"] for entry in entries]),
         "map": sorted({clip.job.map for part in parts for clip in part.clips}),
@@ -154,22 +177,14 @@ def merged_lock(parts: Sequence[Part], name: str) -> dict[str, Any]:
     }
 
 
-def recipe_behind(lock: Mapping[str, Any], job: ClipJob) -> Mapping[str, Any]:
-    """The lock entry with the ``recipe`` and ``scene_semantics`` a clip was made with: the lock itself, or a part.
-
-    Raises
-    ------
-    DatasetError
-        If no part of a merged dataset holds the clip's world.
-    """
-    if not lock.get("parts"):
-        return lock
-    for part in lock["parts"]:
-        spans = part["worlds"].get(job.map, ())
-        if any(first <= job.world <= last for first, last in spans):
-            found: Mapping[str, Any] = part
-            return found
-    raise DatasetError(f"{job.name}: no part of the merged dataset holds its world")
+def _numbered(entry: Mapping[str, Any], offset: int) -> dict[str, Any]:
+    """A part's entry with its worlds' names in the whole."""
+    more = offset - offset_of(entry)
+    worlds = {
+        map: [[first + more, last + more] for first, last in runs] for map, runs in entry["worlds"].items()
+    }
+    plain = {key: value for key, value in entry.items() if key != OFFSET}
+    return {**plain, "worlds": worlds, **({OFFSET: offset} if offset else {})}
 
 
 def _common(recipes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
@@ -216,31 +231,29 @@ def _refuse_disagreement(parts: Sequence[Part]) -> None:
 
 
 def _refuse_collisions(parts: Sequence[Part]) -> None:
-    clips: dict[str, Part] = {}
-    worlds: dict[tuple[str, int], tuple[Path, str]] = {}
+    """No place twice, whatever its name: a world is its map, seed and number."""
+    clips: dict[tuple[World, int], Part] = {}
+    worlds: dict[World, tuple[Part, str]] = {}
     for part in parts:
-        for clip in part.clips:
-            job = clip.job
-            recipe = str(recipe_behind(part.lock, job)["recipe_id"])
-            before = clips.setdefault(job.name, part)
+        for clip, origin, world in zip(part.clips, part.origins, part.worlds, strict=True):
+            job, recipe = clip.job, str(origin.entry["recipe_id"])
+            before = clips.setdefault((world, job.clip), part)
             if before is not part:
                 raise InputError(
-                    f"clip {job.name} is in {before.root} and in {part.root}; a merged dataset holds a clip once"
+                    f"clip {job.name} of seed {origin.seed} is in {before.root} and in {part.root}, and a merged "
+                    f"dataset holds a clip once; {_REMEDY}"
                 )
-            root, made_by = worlds.setdefault((job.map, job.world), (part.root, recipe))
+            first, made_by = worlds.setdefault(world, (part, recipe))
             if made_by != recipe:
                 raise InputError(
-                    f"{job.map}-{job.world:05d} is one world in {root} and another in {part.root} (clip {job.name}); "
-                    "their names collide"
+                    f"{job.map}-{job.world:05d} of seed {origin.seed} is in {first.root} and, by another recipe, in "
+                    f"{part.root}: one place twice; {_REMEDY}"
                 )
 
 
-def _spans(numbers: Sequence[int]) -> list[list[int]]:
-    """Runs of consecutive numbers, first and last of each."""
-    spans: list[list[int]] = []
-    for number in numbers:
-        if spans and number == spans[-1][1] + 1:
-            spans[-1][1] = number
-        else:
-            spans.append([number, number])
-    return spans
+def _refuse_twins(parts: Sequence[Part]) -> None:
+    roots: set[Path] = set()
+    for part in parts:
+        if part.root.resolve() in roots:
+            raise InputError(f"{part.root} is named twice; name each dataset once")
+        roots.add(part.root.resolve())

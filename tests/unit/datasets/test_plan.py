@@ -3,7 +3,7 @@
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from scenegen_datasets.plan import plan, split_of
+from scenegen_datasets.plan import last_world, plan, split_of
 
 MAPS = st.lists(st.sampled_from(["city", "field", "coastline"]), min_size=1, max_size=3, unique=True)
 
@@ -51,3 +51,17 @@ def test_the_job_of_8000_pairs() -> None:
     jobs = plan(["city"], 8, 64, 8000)
     assert (len(jobs), len({job.world for job in jobs})) == (125, 16)
     assert {job.split for job in jobs} == {"train", "val", "test"}
+
+
+@settings(deadline=None)
+@given(MAPS, st.integers(1, 9), st.integers(1, 70), st.integers(1, 400), st.integers(0, 3000))
+def test_a_plan_that_begins_later_is_a_piece_of_the_whole(
+    maps: list[str], clips: int, pairs: int, some: int, first: int
+) -> None:
+    piece = plan(maps, clips, pairs, some, first_world=first)
+    assert [job.ordinal for job in piece] == list(range(len(piece)))
+    assert {job.world for job in piece[:1]} == {first}
+    assert max(job.world for job in piece) == last_world(len(maps), clips, pairs, some, first)
+    skipped = plan(maps, clips, pairs, first % 5 * clips * len(maps) * pairs + some)
+    names = [(job.name, job.split) for job in plan(maps, clips, pairs, some, first_world=first % 5)]
+    assert names == [(job.name, job.split) for job in skipped][-len(names) :]

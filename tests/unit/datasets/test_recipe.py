@@ -140,6 +140,22 @@ def test_pairs_are_rounded_up_and_short_jobs_shorten_the_clip() -> None:
             settle_pairs(recipe, wrong)
 
 
+def test_worlds_beyond_the_largest_number_are_refused() -> None:
+    recipe = resolve_recipe([Source("", {"first_world": 99_999})])
+    assert settle_pairs(recipe, 512) == (recipe, 512)
+    with pytest.raises(InputError, match=r"576 pairs need worlds up to number 100,000, .*--clips-per-world"):
+        settle_pairs(recipe, 513)
+    with pytest.raises(InputError, match="need worlds up to number 195,312"):
+        settle_pairs(resolve_recipe([]), 100_000_000)
+
+
+def test_the_first_world_is_part_of_a_recipe_if_it_is_not_the_first() -> None:
+    assert "first_world" not in resolve_recipe([]).canonical()
+    later = resolve_recipe([Source("", {"first_world": 100})])
+    assert later.canonical()["first_world"] == 100
+    assert Recipe.model_validate(later.canonical()) == later
+
+
 def test_merge_is_key_by_key() -> None:
     assert merge([{"a": {"b": 1, "c": 2}}, {"a": {"b": 3}}, {"d": [1]}]) == {"a": {"b": 3, "c": 2}, "d": [1]}
     assert merge([{"a": 1}, {"a": {"b": 2}}, {"a": 4}]) == {"a": 4}

@@ -22,9 +22,9 @@ from scenegen_datasets.splits.held_out import WEATHERS
 from scenegen_datasets.splits.knobs import SplitKnobs
 from scenegen_datasets.store import create_or_open, read_lock
 from scenegen_datasets.verify import verify
-from scenegen_datasets.versions import merge as module
+from scenegen_datasets.versions import placing as module
 from scenegen_datasets.versions.merge import merge
-from scenegen_datasets.versions.parts import recipe_behind
+from scenegen_datasets.versions.numbers import origin_of
 from scenegen_datasets.versions.release import release
 
 
@@ -100,11 +100,11 @@ def test_where_every_clip_comes_from_is_kept(
     assert {p["content_id"] for p in told["parts"]} == {info(parts[n]).content_id for n in ("city", "field")}
     lock = read_lock(out)
     job = replace(fakes.jobs(1)[0], map="field")
-    assert recipe_behind(lock, job)["recipe"] == read_lock(parts["field"])["recipe"]
+    assert origin_of(lock, job).entry["recipe"] == read_lock(parts["field"])["recipe"]
     plain = read_lock(parts["city"])
-    assert recipe_behind(plain, fakes.jobs(1)[0]) is plain
+    assert origin_of(plain, fakes.jobs(1)[0]).entry is plain
     with pytest.raises(DatasetError, match="no part"):
-        recipe_behind(lock, replace(job, world=9))
+        origin_of(lock, replace(job, world=9))
     assert (
         lock["recipe"]["map"] == ["city", "field"] and lock["recipe"]["sensor"] == plain["recipe"]["sensor"]
     )

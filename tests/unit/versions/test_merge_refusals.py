@@ -36,20 +36,22 @@ def test_collisions_are_refused_with_the_clip_and_where_it_is(
     make_map: Callable[..., Path], fakes: ModuleType, parts: dict[str, Path], tmp_path: Path
 ) -> None:
     again = make_map(tmp_path / "again", "field", 2, seed=1)
-    with pytest.raises(InputError, match=rf"clip field-00000-000 is in {parts['field']} and in {again}"):
+    with pytest.raises(
+        InputError, match=rf"clip field-00000-000 of seed 1 is in {parts['field']} and in {again}"
+    ):
         merge(tmp_path / "all", [parts["field"], again])
-    with pytest.raises(InputError, match="clip city-00000-000 is in"):
-        merge(tmp_path / "all", [parts["city"], parts["city"]])
+    with pytest.raises(InputError, match=f"{parts['city']} is named twice"):
+        merge(tmp_path / "all", [parts["city"], parts["field"], parts["city"]])
     assert not (tmp_path / "all").exists()
 
 
-def test_two_worlds_of_one_name_are_refused(
+def test_one_place_twice_is_refused_whatever_its_clips(
     fakes: ModuleType, parts: dict[str, Path], tmp_path: Path
 ) -> None:
-    """Another seed, and other clips of world 0: no clip collides, the world does."""
+    """The same seed, another climate, and other clips of world 0: no clip collides, the world does."""
     root = tmp_path / "other"
     root.mkdir()
-    recipe = {**read_lock(parts["city"])["recipe"], "seed": 9}
+    recipe = {**read_lock(parts["city"])["recipe"], "climate": {"hour": [0.0, 4.0]}}
     lock = make_lock(recipe, name="other", scene_semantics=3, render=fakes.RENDER)
     jobs = [replace(job, clip=job.clip + 5) for job in fakes.jobs(2)]
     create_or_open(root, "x", lock)
@@ -57,7 +59,8 @@ def test_two_worlds_of_one_name_are_refused(
         fakes.commit_clip(root, fakes.record(job), fakes.encoded(job), fingerprint=fakes.FINGERPRINT)
     fakes.finish(root, jobs)
     with pytest.raises(
-        InputError, match=r"city-00000 is one world in .* and another in .*clip city-00000-005"
+        InputError,
+        match=r"city-00000 of seed 0 is in .* and, by another recipe, in .*: one place twice; .*--seed",
     ):
         merge(tmp_path / "all", [parts["city"], root])
 

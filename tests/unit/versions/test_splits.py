@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -12,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from scenegen.climate.knobs import ClimateKnobs, draw_season, draw_weather_and_hour
-from scenegen.foundation.errors import InputError, RejectedDrawError
+from scenegen.foundation.errors import DatasetError, InputError, RejectedDrawError
 from scenegen.foundation.rng import stream
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.lock import recipe_id
@@ -22,6 +23,7 @@ from scenegen_datasets.resolve import Source
 from scenegen_datasets.splits.draw import draw_conditions, shows_held_out
 from scenegen_datasets.splits.faults import split_faults, split_rule
 from scenegen_datasets.splits.held_out import WEATHERS, HeldOut
+from scenegen_datasets.versions.merge import merge
 
 CLIMATE = ClimateKnobs()
 
@@ -194,3 +196,46 @@ def test_a_merged_dataset_keeps_what_any_part_holds_out() -> None:
     assert HeldOut.of_lock({"recipe": {}, "parts": parts}) == HeldOut(
         maps=("field",), hours=((0.0, 5.0), (20.0, 22.0))
     )
+
+
+def test_a_sensed_dataset_keeps_what_its_source_holds_out() -> None:
+    merged = {"recipe": {}, "parts": [{"recipe": {"splits": {"test_hours": [0, 5]}}}, {"recipe": {}}]}
+    sensed = {"recipe": {"sensed": {}}, "source": merged}
+    assert HeldOut.of_lock(sensed) == HeldOut.of_lock({"recipe": {}, "parts": [sensed]})
+    assert HeldOut.of_lock(sensed) == HeldOut(hours=((0.0, 5.0),))
+
+
+@pytest.mark.parametrize(
+    "lock", [{}, {"recipe": 3}, {"parts": [3]}, {"parts": {"a": 1}}, {"source": {}}], ids=str
+)
+def test_a_lock_that_makes_no_sense_is_refused(lock: dict[str, Any]) -> None:
+    with pytest.raises(DatasetError, match=r"recipe\.lock\.json"):
+        HeldOut.of_lock(lock)
+
+
+def test_what_is_held_out_is_told_in_words() -> None:
+    held = HeldOut(("field",), ((22.0, 4.5),), ("calm", "overcast", "cloudy"))
+    assert HeldOut.of_statement(held.statement()) == held
+    assert held.words == (
+        "map `field`: all of its worlds are for test",
+        "hours 22 to 4.5, in local mean solar time",
+        "calm weather: `wind_mps` from 0 to below 1.6",
+        "overcast weather: `cloud_fraction` 0.95 or more",
+        "cloudy weather: `cloud_fraction` from 0.25 to below 0.95",
+    )
+    assert HeldOut().words == ()
+
+
+def test_the_card_states_what_is_held_out(fakes: ModuleType, make_map: Any, tmp_path: Path) -> None:
+    plain = make_map(tmp_path / "plain", "city", 2)
+    said = (plain / "README.md").read_text(encoding="utf-8")
+    assert "of every 10 worlds of a map, number 1 is for validation, number 2 for test" in said
+    assert "of all splits are drawn alike" in said and "Held out" not in said
+    night = make_map(
+        tmp_path / "night", "field", 2, splits={"test_hours": [20, 23], "test_weather": ["windy"]}
+    )
+    said = (night / "README.md").read_text(encoding="utf-8")
+    assert "* hours 20 to 23, in local mean solar time\n* windy weather: `wind_mps` 5.5 or more\n" in said
+    merge(tmp_path / "all", [plain, night])
+    said = (tmp_path / "all" / "README.md").read_text(encoding="utf-8")
+    assert "* hours 20 to 23" in said and "| plain | 1.0.0 | 6 | city 0 |" in said
