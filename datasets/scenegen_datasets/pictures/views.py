@@ -8,14 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 from jaxtyping import Float32, Float64, UInt16
 
-from scenegen.climate.knobs import draw_weather_and_hour
 from scenegen.foundation.errors import RejectedDrawError
 from scenegen.foundation.rng import stream
 from scenegen.movers.clock import Clock
 from scenegen.thermal_state import ThermalState
 from scenegen.world import World
+from scenegen_datasets.job import ClipJob
 from scenegen_datasets.pictures.shot import Shot
+from scenegen_datasets.plan import split_of
 from scenegen_datasets.recipe import Recipe
+from scenegen_datasets.splits.draw import draw_conditions
 from scenegen_datasets.stage import Stage
 from scenegen_flythrough.fly import fly
 from scenegen_render.bake import bake
@@ -71,12 +73,11 @@ def photograph(stage: Stage, recipe: Recipe, map: str, index: int) -> tuple[Ther
     stage : Stage
         Of world `index` of `map`.
     recipe : Recipe
-        Brings seed, climate, flight, band and count scale; pictures have a size of their own.
+        Brings seed, climate, what is held out, flight, band and count scale; pictures have a size of their own.
     """
-    path = ("clip", map, index, 0)
-    weather, hour = draw_weather_and_hour(
-        recipe.climate, stage.exposure.season, stream(recipe.seed, *path, "weather")
-    )
+    path, held_out = ("clip", map, index, 0), recipe.splits.held_out
+    first = ClipJob(0, map, index, 0, split_of(index, map in held_out.maps), recipe.pairs_per_clip)
+    weather, hour = draw_conditions(recipe.climate, held_out, stage.exposure.season, recipe.seed, first)
     state = stage.heat.solve(weather, hour)
     clock = Clock.draw(stream(recipe.seed, *path, "clock")) if recipe.movers else Clock.stopped()
     studio = _Studio(stage, recipe, state, float(clock.at(np.zeros(1))[0]))

@@ -30,5 +30,9 @@ class CampaignKnobs(Section):
     """Worlds of the dataset plan to fly in. A pilot trained on a dataset of the same seed has not seen the test
     worlds."""
 
+    conditions: Literal["usual", "held_out", "any"] = "usual"
+    """Hours and weather to fly in where the recipe's `splits` keep some for testing: usual ones, which training may
+    have seen; only those held out; or any, as the climate draws them."""
+
     hours: Annotated[tuple[Hour, ...], BeforeValidator(_one_or_many)] = ()
     """Hours [h] the batches take turns at; empty draws one per batch as `climate.hour` says."""

@@ -10,6 +10,7 @@ from scenegen.foundation.errors import InputError
 from scenegen.foundation.section import Section
 from scenegen_datasets.recipe import Recipe, resolve_recipe
 from scenegen_datasets.resolve import Source, leaves, merge, resolve
+from scenegen_datasets.splits.held_out import HeldOut
 from scenegen_flythrough.loop.knobs import LoopKnobs, MissionKnobs
 from scenegen_trainers.campaign.knobs import CampaignKnobs
 
@@ -19,7 +20,7 @@ DIFFICULTY: Mapping[str, float] = MappingProxyType(
 """`mission.difficulty` of each map where a recipe leaves it open: such that the oracle collides in at most 5 % of 400
 flights, and a blind pilot in 40 to 85 %. Other scenes take the key's own default."""
 
-_NOT_FLOWN = ("layers", "clips_per_world", "pairs_per_clip", "flight", "splits")
+_NOT_FLOWN = ("layers", "clips_per_world", "pairs_per_clip", "first_world", "flight")
 """Keys of the dataset that decide nothing about a flight."""
 
 
@@ -49,10 +50,25 @@ class FlightRecipe(Section):
     missions: dict[str, MissionKnobs]
     campaign: CampaignKnobs
 
+    @property
+    def held_out(self) -> HeldOut:
+        """Hours and weather that decide when batches fly: those the recipe holds out, as far as they are drawn."""
+        held = self.dataset.splits.held_out
+        if self.campaign.conditions == "any":
+            return HeldOut()
+        return HeldOut(hours=() if self.campaign.hours else held.hours, weather=held.weather)
+
     def canonical(self) -> dict[str, Any]:
-        """Plain data of everything that decides outcomes."""
-        dataset = {k: v for k, v in self.dataset.canonical().items() if k not in _NOT_FLOWN}
-        return {**dataset, **self.model_dump(mode="json", include={"loop", "missions", "campaign"})}
+        """Plain data of everything that decides outcomes.
+
+        What is held out, and whether it is flown in, enters where anything is; without, a recipe keeps its identity.
+        """
+        left_out = {*_NOT_FLOWN, *(() if self.held_out.conditions else ("splits",))}
+        dataset = {k: v for k, v in self.dataset.canonical().items() if k not in left_out}
+        sections = self.model_dump(mode="json", include={"loop", "missions", "campaign"})
+        if not self.held_out.conditions:
+            del sections["campaign"]["conditions"]
+        return {**dataset, **sections}
 
 
 def flight_keys() -> Iterator[tuple[str, str, Any]]:
@@ -78,6 +94,11 @@ def resolve_flights(sources: Sequence[Source]) -> FlightRecipe:
     dataset = resolve_recipe(theirs)
     asked = merge(source.values for source in own)
     sections = resolve(FlightSections, [*own, Source("", _strong_enough(asked))])
+    if sections.campaign.conditions == "held_out" and not dataset.splits.held_out.conditions:
+        raise InputError(
+            "campaign.conditions held_out: the recipe holds out neither hours nor weather; say which with "
+            "--splits.test-hours or --splits.test-weather"
+        )
     return FlightRecipe(
         dataset=dataset,
         loop=sections.loop,
