@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from scenegen_cli.listing import show
+from scenegen_cli.listing import Listing, show
 
 COLUMNS = ("id", "name", "kind", "colour", "cityscapes", "airsim")
 
 
+@dataclass(frozen=True)
+class Classes(Listing):
+    """List the semantic classes, and what Cityscapes and AirSim call them."""
+
+
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    return show("classes", arguments, _rows, COLUMNS)
+    return show(Classes, "classes", arguments, _rows, COLUMNS)
 
 
 def _rows() -> list[dict[str, Any]]:

@@ -12,6 +12,7 @@ from scenegen.foundation.errors import InputError
 from scenegen.foundation.strict_yaml import read_mapping
 from scenegen.maps.own_scene.own_scene import describe
 from scenegen_cli.console import note, say, say_json, table
+from scenegen_cli.helping import keys_help
 from scenegen_cli.leaving import TerminatedError
 from scenegen_cli.making import processes
 from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
@@ -282,9 +283,5 @@ def _recipe_help() -> str:
     """Recipe keys of the closed loop; those of the dataset are `scenegen render`'s."""
     from scenegen_trainers.campaign.recipe import flight_keys
 
-    lines = ["", "", "recipe keys of the closed loop, as flags here or in a YAML file:"]
-    for key, meaning, default in flight_keys():
-        shown = " ".join(map(str, default)) if isinstance(default, tuple) else default
-        lines.append(f"  --{key.replace('_', '-')}  {meaning} ({shown})")
-    lines.append("those of worlds, weather and camera: scenegen render --help")
-    return "\n".join(lines)
+    keys = keys_help("recipe keys of the closed loop, as flags here or in a YAML file:", flight_keys())
+    return f"\n\n{keys}\n\nthose of worlds, weather and camera: scenegen render --help"

@@ -12,13 +12,14 @@ from scenegen_cli.parse import HelpShown, parse
 
 @dataclass(frozen=True)
 class Listing:
-    """Print a list."""
+    """What a listing command takes; each says in a docstring of its own what it lists."""
 
     json: bool = False
     """Report as JSON."""
 
 
 def show(
+    kind: type[Listing],
     name: str,
     arguments: Sequence[str],
     rows: Callable[[], Sequence[Mapping[str, Any]]],
@@ -26,7 +27,7 @@ def show(
 ) -> int:
     """Print rows as a table of some columns, or all of them as JSON; returns the exit code."""
     try:
-        command = parse(Listing, name, arguments)
+        command = parse(kind, name, arguments)
     except HelpShown:
         return 0
     found = rows()

@@ -54,6 +54,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         0 ok, 1 a check failed, 2 bad input, 3 finished with quarantined clips, 4 no space left, 130/143 interrupted.
     """
     words = list(sys.argv[1:] if arguments is None else arguments)
+    if words[0:1] == ["help"] and words[1:]:
+        words = [words[1], "--help"]
     if not words or words[0] in ("-h", "--help", "help"):
         say(_help())
         return 0 if words else 2

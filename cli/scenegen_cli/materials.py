@@ -4,17 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import Any
 
-from scenegen_cli.listing import show
+from scenegen_cli.listing import Listing, show
 
 COLUMNS = ("id", "name", "emissivity", "solar_absorptance", "thickness_m", "build", "source")
 
 
+@dataclass(frozen=True)
+class Materials(Listing):
+    """List the materials with their thermal and optical properties, and where each row is from."""
+
+
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    return show("materials", arguments, _rows, COLUMNS)
+    return show(Materials, "materials", arguments, _rows, COLUMNS)
 
 
 def _rows() -> list[dict[str, Any]]:

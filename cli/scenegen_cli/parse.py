@@ -10,6 +10,7 @@ import io
 import re
 from collections.abc import Sequence
 from dataclasses import fields
+from itertools import pairwise
 from typing import Any, TypeVar
 
 import tyro
@@ -17,11 +18,19 @@ import tyro
 from scenegen.foundation.errors import InputError, nearest
 from scenegen.foundation.strict_yaml import parse_mapping
 from scenegen_cli.console import say
+from scenegen_cli.helping import command_help
+from scenegen_cli.parameters import Parameter, parameters
 
 Command = TypeVar("Command")
 
 _FRAME = re.compile(r"[│╭╮╰╯|+]")
 _RULE = re.compile(r"[─-]{9,}")
+_IN_OUR_WORDS = (
+    (re.compile(r"no type matching .+ Got errors: .+<class '\w+'>: "), ""),
+    (re.compile(r"invalid literal for int\(\) with base 10: (.+)"), r"\1 is not a whole number"),
+    (re.compile(r"could not convert string to float: (.+)"), r"\1 is not a number"),
+    (re.compile(r"Could not find valid parse for arguments: \[(.+)\]"), r"\1 cannot be read"),
+)
 
 
 class HelpShown(Exception):  # noqa: N818 - not an error
@@ -48,9 +57,14 @@ def parse(command: type[Command], name: str, arguments: Sequence[str], more_help
     HelpShown
         After ``--help``.
     """
-    shown, complaint = io.StringIO(), io.StringIO()
+    if any(word in ("-h", "--help") for word in arguments):
+        say(command_help(command, name) + more_help)
+        raise HelpShown
+    takes = parameters(command)
+    _refuse_empty(arguments, takes)
+    complaint = io.StringIO()
     try:
-        with contextlib.redirect_stdout(shown), contextlib.redirect_stderr(complaint):
+        with contextlib.redirect_stderr(complaint):
             value, rest = tyro.cli(
                 command,
                 prog=f"scenegen {name}",
@@ -58,11 +72,9 @@ def parse(command: type[Command], name: str, arguments: Sequence[str], more_help
                 return_unknown_args=True,
                 config=(tyro.conf.FlagCreatePairsOff,),
             )
-    except SystemExit as leaving:
-        if not leaving.code:
-            say(shown.getvalue().rstrip() + more_help)
-            raise HelpShown from None
-        raise InputError(f"{_one_line(complaint.getvalue())} (see 'scenegen {name} --help')") from None
+    except SystemExit:
+        text = _one_line(complaint.getvalue())
+        raise InputError(f"{_missing(text, takes) or text} (see 'scenegen {name} --help')") from None
     if rest:
         raise InputError(_unknown(rest[0], [f"--{f.name.replace('_', '-')}" for f in fields(command)]))  # type: ignore[arg-type]
     return value
@@ -147,8 +159,24 @@ def _unknown(word: str, known: Sequence[str]) -> str:
     return f"unknown flag '{word}'{nearest(word, known)}"
 
 
+def _refuse_empty(arguments: Sequence[str], takes: Sequence[Parameter]) -> None:
+    """A flag that takes all words up to the next flag takes at least one."""
+    greedy = {one.label.partition(" ")[0] for one in takes if one.several and not one.positional}
+    for word, after in pairwise([*arguments, "--"]):
+        if word in greedy and after.startswith("--"):
+            raise InputError(f"{word}: a value is missing")
+
+
+def _missing(complaint: str, takes: Sequence[Parameter]) -> str:
+    """Name the first required thing whose meaning a complaint repeats, as tyro does if it is missing."""
+    for one in takes:
+        if one.required and one.meaning in complaint:
+            return f"{one.label} is missing: {one.meaning.rstrip('.')}"
+    return ""
+
+
 def _one_line(box: str) -> str:
-    """The message of tyro's box, without the box."""
+    """The message of tyro's box, without the box, in words of ours where tyro's are Python's."""
     lines = [_FRAME.sub(" ", line).strip() for line in box.splitlines()]
     title = next((k for k, line in enumerate(lines) if line), 0)
     said: list[str] = []
@@ -158,4 +186,6 @@ def _one_line(box: str) -> str:
         if not _RULE.search(line):
             said.append(line)
     text = " ".join(" ".join(said).split())
+    for pattern, ours in _IN_OUR_WORDS:
+        text = pattern.sub(ours, text)
     return text.removeprefix("Error parsing ") or "the command line cannot be read"

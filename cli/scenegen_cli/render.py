@@ -11,6 +11,7 @@ from scenegen.foundation.errors import InputError
 from scenegen.foundation.strict_yaml import read_mapping
 from scenegen.maps.own_scene.own_scene import describe
 from scenegen_cli.console import say, say_json
+from scenegen_cli.helping import keys_help
 from scenegen_cli.making import make, plan_in_words, processes
 from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
 from scenegen_datasets.licence import checked_licence
@@ -23,8 +24,8 @@ from scenegen_datasets.resolve import Source, leaves, merge
 class Render:
     """Make a dataset. Run again to resume it where it stopped; raise --pairs to grow it."""
 
-    pairs: int = 0
-    """How many pairs; rounded up to whole clips. Must be given."""
+    pairs: int | None = None
+    """How many pairs, rounded up to whole clips; must be given."""
     out: Path | None = None
     """Directory of the dataset; by default scenegen-MAP here."""
     recipe: Path | None = None
@@ -35,8 +36,8 @@ class Render:
     """Worker processes; 0 is one per CPU."""
     dry_run: bool = False
     """Say what would be made, and stop."""
-    verify: bool = True
-    """Verify the whole dataset at the end."""
+    no_verify: bool = False
+    """Do not verify the whole dataset at the end."""
     allow_mixed: bool = False
     """Go on with a dataset that other software versions began."""
     license: str | None = None
@@ -53,7 +54,7 @@ def run(arguments: Sequence[str]) -> int:
     except HelpShown:
         return 0
     asked, recipe = ask(command.recipe, command.size, flags)
-    if command.pairs == 0:
+    if not command.pairs:
         raise InputError("--pairs is missing or 0: say how many pairs to make, such as --pairs 512")
     recipe, pairs = settle_pairs(recipe, command.pairs)
     for scene in recipe.scenes.values():
@@ -74,7 +75,7 @@ def run(arguments: Sequence[str]) -> int:
     again = ["scenegen", "render", *arguments, *([] if command.out else ["--out", str(out)])]
     if pairs != command.pairs and not command.json:
         say(f"{command.pairs:,} pairs are rounded up to {pairs:,}: whole clips of {recipe.pairs_per_clip}")
-    return make(job, again, check_after=command.verify, as_json=command.json)
+    return make(job, again, check_after=not command.no_verify, as_json=command.json)
 
 
 def ask(file: Path | None, size: str | None, flags: Mapping[str, Any]) -> tuple[dict[str, Any], Recipe]:
@@ -118,12 +119,7 @@ def _say_plan(job: Job, command: Render) -> None:
 
 def _recipe_help() -> str:
     """All recipe keys, generated from the recipe itself."""
-    lines = [
-        "",
-        "",
-        "recipe keys, as flags here or in a YAML file (a range is two numbers: --climate.hour 20 23):",
-    ]
-    for key, meaning, default in leaves(Recipe):
-        shown = " ".join(map(str, default)) if isinstance(default, tuple) else default
-        lines.append(f"  --{key.replace('_', '-')}  {meaning} ({'drawn' if default is None else shown})")
-    return "\n".join(lines)
+    title = "recipe keys, as flags here or in a YAML file (a range is two numbers: --climate.hour 20 23):"
+    return "\n\n" + keys_help(
+        title, leaves(Recipe), lambda key: "drawn" if key.startswith("climate.") else "none"
+    )

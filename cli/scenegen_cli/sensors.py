@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from scenegen_cli.listing import show
+from scenegen_cli.listing import Listing, show
 
 COLUMNS = ("name", "size_px", "hfov_deg", "band_um", "netd_mk", "time_constant_ms", "description")
 
 
+@dataclass(frozen=True)
+class Sensors(Listing):
+    """List the cameras that --camera.preset knows."""
+
+
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    return show("sensors", arguments, _rows, COLUMNS)
+    return show(Sensors, "sensors", arguments, _rows, COLUMNS)
 
 
 def _rows() -> list[dict[str, Any]]:

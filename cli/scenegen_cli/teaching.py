@@ -11,6 +11,7 @@ from typing import Any
 from scenegen.foundation.errors import InputError
 from scenegen.foundation.strict_yaml import read_mapping
 from scenegen_cli.console import note, span
+from scenegen_cli.helping import keys_help
 from scenegen_cli.parse import split_recipe_flags
 from scenegen_datasets.resolve import Source, leaves
 
@@ -35,13 +36,10 @@ def recipe_help() -> str:
     """All recipe keys, generated from the recipe itself."""
     from scenegen_trainers.training.recipe import MODELS, PROFILES, TrainingRecipe
 
-    lines = ["", "", f"models: {', '.join(MODELS)}; profiles: {', '.join(PROFILES)}", ""]
-    lines.append("recipe keys, as flags here or in a YAML file; models and profiles set some of them:")
-    for key, meaning, default in leaves(TrainingRecipe):
-        if key not in ("model", "seed"):
-            shown = " ".join(map(str, default)) if isinstance(default, tuple) else default
-            lines.append(f"  --{key.replace('_', '-')}  {meaning} ({shown})")
-    return "\n".join(lines)
+    known = f"models: {', '.join(MODELS)}; profiles: {', '.join(PROFILES)}"
+    title = "recipe keys, as flags here or in a YAML file; models and profiles set some of them:"
+    keys = [row for row in leaves(TrainingRecipe) if row[0] not in ("model", "seed")]
+    return f"\n\n{known}\n\n{keys_help(title, keys)}"
 
 
 def need_torch() -> None:
