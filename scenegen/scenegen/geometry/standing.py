@@ -1,4 +1,6 @@
-"""How high the mesh of the ground lies, where its triangles are too coarse to follow the relief."""
+"""How the mesh of the ground lies where its triangles are too coarse to follow the relief: what stands there, stands
+on triangles.
+"""
 
 from __future__ import annotations
 
@@ -27,21 +29,65 @@ def mesh_heights(
     relief : callable
     """
     corners = ground.vertices[ground.faces[asked]]
-    a, b, c = (corners[:, k] for k in range(3))
-    doubled = _cross(b - a, c - a)
+    doubled = _doubled(*corners.swapaxes(0, 1))
     corners, doubled = corners[np.abs(doubled) > 1e-6], doubled[np.abs(doubled) > 1e-6]
-    face, point = shapely.STRtree(shapely.points(xy)).query(
-        shapely.polygons(corners[..., :2]), predicate="intersects"
-    )
+    point, face = _tree_of(corners).query(shapely.points(xy), predicate="intersects")
     a, b, c = (corners[face, k] for k in range(3))
-    out = np.column_stack([xy[point], np.zeros(len(point))]) - a
-    u, v = _cross(out, c - a) / doubled[face], _cross(b - a, out) / doubled[face]
+    u, v = _doubled(a, xy[point], c) / doubled[face], _doubled(a, b, xy[point]) / doubled[face]
     height = a[:, 2] + u * (b - a)[:, 2] + v * (c - a)[:, 2]
     found = np.full(len(xy), -np.inf)
     np.maximum.at(found, point, height)
     return np.where(np.isfinite(found), found, relief(xy))
 
 
-def _cross(u: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """Third component of the cross product, of the plan alone."""
-    return np.asarray(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
+def mesh_slopes(
+    corners: Float64[np.ndarray, "faces 3 3"], xy: Float64[np.ndarray, "points 2"]
+) -> tuple[Float64[np.ndarray, "points"], Float64[np.ndarray, "points"]]:
+    """Height [m] and slope of the triangle over each point; endlessly steep, at height 0, where there is none.
+
+    Parameters
+    ----------
+    corners : float64 (faces, 3, 3)
+        Of triangles none of which stands upright.
+    xy : float64 (points, 2)
+    """
+    point, face = _tree_of(corners).query(shapely.points(xy), predicate="within")
+    a, b, c = (corners[face, k] for k in range(3))
+    normal = np.cross(b - a, c - a)
+    aside = ((xy[point] - a[:, :2]) * normal[:, :2]).sum(axis=1)
+    height, slope = np.zeros(len(xy)), np.full(len(xy), np.inf)
+    height[point] = a[:, 2] - aside / normal[:, 2]
+    slope[point] = np.hypot(normal[:, 0], normal[:, 1]) / np.abs(normal[:, 2])
+    return height, slope
+
+
+def draped(corners: Float64[np.ndarray, "faces 3 2"], relief: Relief) -> Relief:
+    """Return a relief as triangles have it whose corners lie on it; beside them it stays what it is.
+
+    Parameters
+    ----------
+    corners : float64 (faces, 3, 2)
+        Of triangles in the plan that share no area.
+    relief : callable
+    """
+    tree = _tree_of(corners)
+
+    def height(xy: Float64[np.ndarray, "points 2"]) -> Float64[np.ndarray, "points"]:
+        result = relief(xy)
+        point, face = tree.query(shapely.points(xy), predicate="intersects")
+        a, b, c = (corners[face, k] for k in range(3))
+        share = [_doubled(p, q, xy[point]) / _doubled(a, b, c) for p, q in ((b, c), (c, a), (a, b))]
+        result[point] = sum(w * relief(v) for w, v in zip(share, (a, b, c), strict=True))
+        return result
+
+    return height
+
+
+def _tree_of(corners: np.ndarray) -> shapely.STRtree:
+    """Plans of triangles, to ask which lie over a point."""
+    return shapely.STRtree(shapely.polygons(corners[..., :2]))
+
+
+def _doubled(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """Twice the signed area of the plans of triangles."""
+    return np.asarray((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0]))

@@ -15,7 +15,7 @@ from scenegen.geometry.part import Part, concatenate
 from scenegen.geometry.patch import patches
 
 _SHORT_M = 1.5
-_GATE_M, _DOOR_M = 2.15, 2.1
+_GATE_M = 2.15
 _FIRST_SITE_M = 0.15
 _TUCK_M = 0.05
 _BLANK_SPACING_M = 4.0

@@ -12,11 +12,10 @@ from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along, clear_of, first_come
 from scenegen.maps.city.park import ParkPlan
 from scenegen.maps.city.stops import Stops
-from scenegen.maps.city.streets import Rank, StreetPlan
+from scenegen.maps.city.streets import KERB_M, Rank, StreetPlan
 from scenegen.maps.city.workshop import CityWorkshop
 from scenegen.parts.fixtures.erect import erect
 
-_KERB_M = 0.12
 _FROM_KERB_M = 0.6
 _SIGNS = ("sign", "round_sign", "triangle_sign")
 _AT_KERB = ("lamp", "traffic_light", "gantry_light", *_SIGNS, "litter_bin")
@@ -70,7 +69,7 @@ def build_furniture(furniture: Furniture, shop: CityWorkshop, rng: np.random.Gen
     """All street furniture as parts."""
     parts = []
     for name, rows in furniture.rows.items():
-        position = np.column_stack([rows[:, :2], shop.relief(rows[:, :2]) + _KERB_M])
+        position = np.column_stack([rows[:, :2], shop.relief(rows[:, :2]) + KERB_M])
         parts += erect(name, position, rows[:, 2], shop, rng)
     return parts
 

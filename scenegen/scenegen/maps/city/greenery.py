@@ -12,11 +12,11 @@ from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along, clear_of, first_come
 from scenegen.maps.city.districts import Layout
 from scenegen.maps.city.park import ParkPlan
+from scenegen.maps.city.streets import KERB_M
 from scenegen.maps.city.uses import Use
 from scenegen.maps.city.workshop import CityWorkshop
 from scenegen.parts.vegetation.plant import crown_radius_m, hedges, plant, shrubs, triangles
 
-_KERB_M = 0.12
 _FLORA = (
     (
         33.0,
@@ -94,7 +94,7 @@ def _trees(
 ) -> tuple[list[Part], int]:
     radius = np.array([float(crown_radius_m(name, 1.0)) for name in names])[spots.kind] * spots.height_m
     free = _free(spots.xy, radius, layout, posts)
-    position = np.column_stack([spots.xy, shop.relief(spots.xy) + _KERB_M])
+    position = np.column_stack([spots.xy, shop.relief(spots.xy) + KERB_M])
     detail = min(1.0, _MOST_TRIANGLES / max(triangles(spots.height_m[free]), 1))
     parts: list[Part] = []
     for k, (name, child) in enumerate(zip(names, rng.spawn(len(names)), strict=True)):
@@ -193,7 +193,7 @@ def _hedges(layout: Layout, shop: CityWorkshop, rng: np.random.Generator) -> lis
             for piece in shapely.get_parts(line)
             if piece.length > 1.5
         ]
-        parts += hedges(pieces, height, _HEDGE_WIDTH_M, shop, child, _KERB_M)
+        parts += hedges(pieces, height, _HEDGE_WIDTH_M, shop, child, KERB_M)
     return parts
 
 
@@ -219,5 +219,5 @@ def _beds(parks: dict[int, ParkPlan], shop: CityWorkshop, rng: np.random.Generat
             places.append(xy)
             sizes.append(rng.uniform(0.9, 1.8, (len(xy), 1)) * rng.uniform(0.8, 1.1, (len(xy), 3)))
     xy, size = np.concatenate(places), np.concatenate(sizes)
-    position = np.column_stack([xy, shop.relief(xy) + _KERB_M])
+    position = np.column_stack([xy, shop.relief(xy) + KERB_M])
     return shrubs(position, size, rng.uniform(0.0, 2 * np.pi, len(xy)), shop, rng)

@@ -7,13 +7,12 @@ import shapely
 from jaxtyping import Float64
 from shapely.geometry.polygon import orient
 
-from scenegen.maps.city.streets import Rank, StreetPlan
+from scenegen.maps.city.streets import KERB_M, Rank, StreetPlan
 from scenegen.maps.city.workshop import CityWorkshop
 from scenegen.movers.drive import drive
 from scenegen.movers.mover import Mover
 from scenegen.movers.stroll import stroll
 
-_KERB_M = 0.12
 _LANE_M = {Rank.ARTERIAL: 5.3, Rank.COLLECTOR: 1.75, Rank.SIDE: 1.35}
 """Middle of the lane next to the kerb (or to the parked cars), right of the centre line."""
 _WIDEST_M = 6.5
@@ -43,7 +42,7 @@ def plan_motion(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) 
     people = rates.uniform(*shop.knobs.people_per_100_m)
     movers = [*drive(_lanes(plan), vehicles, shop, cars, speed_mps=(7.0, 12.5), mix=_SMALL)]
     movers += drive([_ring(plan)], vehicles, shop, large, speed_mps=(9.0, 14.0), mix=_LARGE)
-    return (*movers, *stroll(_sidewalks(plan, ways_rng), people, shop, walkers, lift_m=_KERB_M))
+    return (*movers, *stroll(_sidewalks(plan, ways_rng), people, shop, walkers, lift_m=KERB_M))
 
 
 def _lanes(plan: StreetPlan) -> list[Float64[np.ndarray, "_ 2"]]:

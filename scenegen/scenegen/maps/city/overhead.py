@@ -12,12 +12,12 @@ from scenegen.classes import Semantic
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along
 from scenegen.geometry.template import Template, place
-from scenegen.maps.city.streets import Rank, StreetPlan
+from scenegen.maps.city.streets import KERB_M, Rank, StreetPlan
 from scenegen.maps.city.workshop import CityWorkshop
 from scenegen.parts.fixtures.wires import wires
 from scenegen.parts.skin import Skin
 
-_KERB_M, _FROM_KERB_M = 0.12, 0.6
+_FROM_KERB_M = 0.6
 _POLE_M, _SPAN_HEIGHT_M, _SPAN_SAG_M = 7.6, 7.2, 0.9
 _PITCH_M, _TRIES_M = 29.0, (0.0, 1.7, -1.7, 3.4, -3.4, 5.1, -5.1)
 _LANES_M = {Rank.ARTERIAL: (-5.0, -1.8, 1.8, 5.0), Rank.COLLECTOR: (-1.9, 1.9)}
@@ -127,7 +127,7 @@ def build_overhead(overhead: Overhead, shop: CityWorkshop) -> list[Part]:
         return []
     steel, cable = shop.palette.variants("steel_galv_post", 2)[0], shop.palette.only("cable_weathered")
     flat = overhead.poles.reshape(-1, 3)
-    position = np.column_stack([flat[:, :2], shop.relief(flat[:, :2]) + _KERB_M])
+    position = np.column_stack([flat[:, :2], shop.relief(flat[:, :2]) + KERB_M])
     owner = shop.builder.new_objects(2 * count) + np.arange(2 * count)
     skins = np.full((2 * count, 1), steel)
     posts = place(_pole(), position, flat[:, 2], np.ones((2 * count, 3)), skins, owner)

@@ -9,9 +9,9 @@ import shapely
 
 from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region
+from scenegen.maps.city.streets import KERB_M
 from scenegen.maps.city.workshop import CityWorkshop
 
-_KERB_M = 0.12
 _PATH_HALF_M = 1.3
 _BANK_M = 0.35
 _BENCH_M = 2.3
@@ -148,11 +148,11 @@ def park_regions(
     walk, planted, water = shop.builder.new_objects(), shop.builder.new_objects(), shop.builder.new_objects()
     gravel = shop.palette.pick("concrete_pavement" if rng.uniform() < 0.5 else "soil_dry", rng)
     semantic = int(Semantic.SIDEWALK)
-    regions = [Region(p, gravel, semantic, walk, _KERB_M) for p in park.paths]
+    regions = [Region(p, gravel, semantic, walk, KERB_M) for p in park.paths]
     soil = shop.palette.pick("soil_wet", rng)
-    regions += [Region(b, soil, int(Semantic.SOIL), planted, _KERB_M) for b in park.beds]
+    regions += [Region(b, soil, int(Semantic.SOIL), planted, KERB_M) for b in park.beds]
     if park.pond is not None and not park.pond.is_empty and park.pond.geom_type == "Polygon":
-        level = float(shop.relief(shapely.get_coordinates(park.pond.exterior)).min()) + _KERB_M - _BANK_M
+        level = float(shop.relief(shapely.get_coordinates(park.pond.exterior)).min()) + KERB_M - _BANK_M
         skin = shop.palette.special("water_fresh_or_sea", "pond")  # the heat balance knows the season
         regions.append(Region(park.pond, skin, int(Semantic.WATER), water, level, absolute=True))
     return regions

@@ -10,16 +10,15 @@ from scenegen.geometry.part import Part
 from scenegen.geometry.placement import along, clear_of, first_come
 from scenegen.maps.city.park import ParkPlan
 from scenegen.maps.city.stops import Stops
-from scenegen.maps.city.streets import StreetPlan
+from scenegen.maps.city.streets import KERB_M, StreetPlan
 from scenegen.maps.city.workshop import CityWorkshop
 from scenegen.parts.people.stand import stand
 
-_KERB_M = 0.12
 _AT_KERB_M = (0.45, 0.95)
 """How far from the kerb people wait to cross: out of the way of those who walk past."""
 _ROOM_M = 0.42
 """Radius that one person takes."""
-_POST_GAP_M, _EDGE_M = 0.35, 4.0
+_EDGE_M = 4.0
 _GROUP_M = 0.95
 _WAITING_M = (-2.6, -3.2, 3.3)
 """Places beside a shelter, along it."""
@@ -62,7 +61,7 @@ def build_people(
     parts = []
     walking = bodies.uniform(size=len(rows)) < 0.25
     for posture, some in (("standing", rows[~walking]), ("walking", rows[walking])):
-        position = np.column_stack([some[:, :2], shop.relief(some[:, :2]) + _KERB_M])
+        position = np.column_stack([some[:, :2], shop.relief(some[:, :2]) + KERB_M])
         parts += stand(position, some[:, 2], posture, shop, bodies)
     return parts, rows[:, :2]
 

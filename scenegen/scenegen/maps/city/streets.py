@@ -12,6 +12,8 @@ from shapely.ops import split
 
 from scenegen.maps.city.bend import Bend
 
+KERB_M = 0.12
+"""Height of sidewalks and yards above the streets [m]."""
 _CORNER_RADIUS_M = 4.5
 _CLEAR_OF_JUNCTION_M = 5.0
 _SHORTEST_LINK_M = 22.0

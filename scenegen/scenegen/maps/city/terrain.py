@@ -2,43 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-
 import numpy as np
 import shapely
 
 from scenegen.classes import Semantic
+from scenegen.geometry.fineness import Fineness, ground_below
 from scenegen.geometry.ground import Region, drape
 from scenegen.geometry.hidden import push_out
 from scenegen.geometry.part import Part
 from scenegen.geometry.planar import triangulate
-from scenegen.geometry.scatter import contact_points, finer_near
+from scenegen.geometry.scatter import contact_points
 from scenegen.maps.city.districts import Block, Layout
 from scenegen.maps.city.markings import marking_quads
 from scenegen.maps.city.outskirts import FAR_M, far_regions
 from scenegen.maps.city.park import ParkPlan, park_regions
-from scenegen.maps.city.streets import StreetPlan
+from scenegen.maps.city.streets import KERB_M, StreetPlan
 from scenegen.maps.city.uses import Use
 from scenegen.maps.city.workshop import CityWorkshop
 
-KERB_M = 0.12
-_FINE_M, _COARSE_M, _NEAR_M = 3.3, 5.5, 3.8
-"""Spacing of the lattice within `_NEAR_M` of walls and cars, and elsewhere."""
-_LEAP, _FIELD_LINE_M = 3.5, 12.0
-"""Around the city: how much coarser the lattice starts than inside, and the spacing along the outlines of fields."""
-_LINE_M, _CAR_LINE_M = 4.4, 1.7
-"""Spacing along lines: of paving and kerbs, and around cars."""
+_FINENESS = Fineness(
+    lattice_m=(3.3, 5.5), near_m=3.8, wall_row_m=(1.8, 1.0), line_m=4.4, car_line_m=1.7, road_grain_m=0.6,
+    grain_m=0.9, leap=3.5,
+)  # fmt: skip
+_FIELD_LINE_M = 12.0
+"""Spacing along the outlines of fields around the city."""
 _FAR_LINES_M, _FAR_TUCK_M, _FAR_ROW, _FAR_BESIDE_M = 350.0, 0.3, (14.0, 7.0), 2.5
 """Around the city: how far out plain buildings and groves have contact lines, how far these lie below them, their
 rows of points, and how far beyond the sites keep clear of them."""
 _SILL_M = 0.15
 """How far below a car the ground still looks out past its sill."""
-_ROAD_GRAIN_M, _GRAIN_M = 0.6, 0.9
-_WALL_ROW = (1.8, 1.0)
-"""Spacing, distance: the row of points along walls, and the spacing on the contact line itself."""
 _CAR_ROWS = ((1.8, 0.65), (3.6, 1.7))
-"""The same for rows around cars: what a car hides of the sky falls off within its height."""
+"""Spacing, distance of rows of points around cars: what a car hides of the sky falls off within its height."""
 _TUCK_M = 0.01
 
 
@@ -65,7 +59,7 @@ def build_terrain(
     dry_share = rng.uniform(*shop.knobs.dry_lawn_share)
     regions = far_regions(plan, shop, rng)
     near = far[shapely.distance(plan.outline, far) < _FAR_LINES_M]
-    regions += _covered(shapely.buffer(near, -_FAR_TUCK_M, join_style="mitre"), regions)
+    regions += ground_below(shapely.buffer(near, -_FAR_TUCK_M, join_style="mitre"), regions)
     fields = len(regions)
     regions += _streets(plan, shop, rng)
     for k, block in enumerate(layout.blocks):
@@ -73,54 +67,23 @@ def build_terrain(
         if k in parks:
             regions += park_regions(parks[k], shop, rng)
     regions += _paths(layout, shop, rng)
-    regions += _covered(shapely.buffer(cars, -_SILL_M, join_style="mitre"), regions)
+    regions += ground_below(shapely.buffer(cars, -_SILL_M, join_style="mitre"), regions)
     holes = shapely.union_all([b.footprint for b in layout.buildings]).buffer(-_TUCK_M, join_style="mitre")
     solid = list(getattr(holes, "geoms", [holes]))
     regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in solid]
     half = float(np.abs(plan.outline.bounds).max())
-    regions = [replace(r, grain_m=_grain(r)) for r in regions]
+    regions = _FINENESS.grained(regions)
     outlines = [r.outline for r in regions]
     plane = triangulate(
         outlines,
-        _lattice(plan, solid, cars, rng),
-        np.array([_FIELD_LINE_M if k < fields else _line_spacing(r) for k, r in enumerate(regions)]),
+        _FINENESS.lattice(plan.outline, solid, [cars], FAR_M, rng),
+        np.array([_FIELD_LINE_M if k < fields else _FINENESS.line_spacing(r) for k, r in enumerate(regions)]),
         (half * 1.03, 0.2),
         np.concatenate(
             [*(contact_points(list(cars), *row) for row in _CAR_ROWS), contact_points(list(near), *_FAR_ROW)]
         ),
     )
     return push_out(drape(plane, regions, shop.relief), far, _FAR_BESIDE_M)
-
-
-def _lattice(
-    plan: StreetPlan, solid: Sequence[shapely.Polygon], cars: np.ndarray, rng: np.random.Generator
-) -> np.ndarray:
-    """Free points: a row along walls, a lattice that is finer near walls and cars, coarser bands around the city."""
-    near = np.concatenate([np.asarray(solid, dtype=object), cars])
-    lattice = finer_near(plan.outline, near, (_FINE_M, _COARSE_M), _NEAR_M, FAR_M, rng, _LEAP)
-    return np.concatenate([contact_points(solid, *_WALL_ROW), lattice])
-
-
-def _line_spacing(region: Region) -> float:
-    """Largest distance of points along an outline [m]."""
-    if region.hole:
-        return _WALL_ROW[0]
-    return _CAR_LINE_M if region.lumped and not region.merge_m else _LINE_M
-
-
-def _grain(region: Region) -> float:
-    """Size of the cells that have one site at most [m]: on streets finer, for what lies between cars and kerbs."""
-    return _ROAD_GRAIN_M if region.semantic == int(Semantic.ROAD) else _GRAIN_M
-
-
-def _covered(plans: np.ndarray, regions: Sequence[Region]) -> list[Region]:
-    """The ground below each thing, with a site of its own: beside the thing it is another world."""
-    whole = [r for r in regions if not r.lumped]
-    tree = shapely.STRtree(np.array([r.outline for r in whole], dtype=object))
-    thing, ground = tree.query(shapely.centroid(plans), predicate="intersects")
-    top = np.zeros(len(plans), np.int64)
-    np.maximum.at(top, thing, ground)
-    return [replace(whole[k], outline=p, lumped=True) for p, k in zip(plans, top.tolist(), strict=True)]
 
 
 def _streets(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) -> list[Region]:
@@ -130,7 +93,8 @@ def _streets(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) -> 
     regions = [Region(plan.outline, shop.palette.pick("asphalt_aged", rng), int(Semantic.ROAD), road)]
     quads = shapely.polygons(marking_quads(plan, rng))
     return regions + [
-        Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True, merge_m=_LINE_M) for q in quads
+        Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True, merge_m=_FINENESS.line_m)
+        for q in quads
     ]
 
 

@@ -15,13 +15,12 @@ from scenegen.geometry.relief import slopes
 from scenegen.maps.city.districts import Layout
 from scenegen.maps.city.knobs import CityKnobs
 from scenegen.maps.city.stops import Stops
-from scenegen.maps.city.streets import Rank, StreetPlan
+from scenegen.maps.city.streets import KERB_M, Rank, StreetPlan
 from scenegen.maps.city.workshop import CityWorkshop
 from scenegen.parts.vehicles.fleet import Fleet
 from scenegen.parts.vehicles.park import park
 from scenegen.parts.vehicles.vehicle import KINDS, size_m
 
-_KERB_M = 0.12
 _PITCH_M = 5.7
 _ROOM_M = (0.6, 0.25)
 """Kept free before and behind, and on both sides together."""
@@ -104,7 +103,7 @@ def _spots(
     bays = np.concatenate([np.zeros((0, 3)), *(_in_car_park(lot, rng) for lot in lots)])
     spots = np.concatenate([street, bays])
     kind = np.concatenate([kind, rng.choice(len(KINDS), len(bays), p=_SHARES["lot"])])
-    lift = np.repeat([0.0, _KERB_M], [len(street), len(bays)])
+    lift = np.repeat([0.0, KERB_M], [len(street), len(bays)])
     size = np.array([size_m(name)[:2] for name in KINDS])[kind] + np.array(_ROOM_M)
     shapes = rectangles(spots[:, :2], size[:, 0], size[:, 1], spots[:, 2])
     keep = first_come(shapes)

@@ -8,6 +8,7 @@ import shapely
 from scenegen.classes import Semantic
 from scenegen.geometry.part import Part
 from scenegen.geometry.placement import first_come, rectangles
+from scenegen.geometry.standing import mesh_slopes
 from scenegen.geometry.template import place
 from scenegen.maps.coastline.boulders import boulder
 from scenegen.maps.coastline.huts import hut
@@ -36,7 +37,9 @@ def build_horizon(rock: str, ground: Part, shop: CoastWorkshop, rng: np.random.G
     """
     land_rng, islet_rng = rng.spawn(2)
     xy, built, size, heading = _spots(shop, land_rng)
-    height, slope = _surface(ground, xy, shop.coast.half_m)
+    corners = ground.vertices[ground.faces]
+    beyond = np.abs(corners[..., :2]).max(axis=(1, 2)) > shop.coast.half_m
+    height, slope = mesh_slopes(corners[beyond], xy)
     farm, wood = built & (slope < _STEEPEST), ~built & np.isfinite(slope)
     foot = np.column_stack([xy, height])
     return [
@@ -44,22 +47,6 @@ def build_horizon(rock: str, ground: Part, shop: CoastWorkshop, rng: np.random.G
         _groves(foot[wood], size[wood], shop, land_rng),
         *_islets(rock, shop, islet_rng),
     ]
-
-
-def _surface(ground: Part, xy: np.ndarray, half_m: float) -> tuple[np.ndarray, np.ndarray]:
-    """Height [m] and slope of the ground beyond the detailed square; endlessly steep where there is none."""
-    corners = ground.vertices[ground.faces]
-    corners = corners[np.abs(corners[..., :2]).max(axis=(1, 2)) > half_m]
-    point, face = shapely.STRtree(shapely.polygons(corners[..., :2])).query(
-        shapely.points(xy), predicate="within"
-    )
-    a, b, c = (corners[face, k] for k in range(3))
-    normal = np.cross(b - a, c - a)
-    aside = ((xy[point] - a[:, :2]) * normal[:, :2]).sum(axis=1)
-    height, slope = np.zeros(len(xy)), np.full(len(xy), np.inf)
-    height[point] = a[:, 2] - aside / normal[:, 2]
-    slope[point] = np.hypot(normal[:, 0], normal[:, 1]) / np.abs(normal[:, 2])
-    return height, slope
 
 
 def _spots(

@@ -19,7 +19,8 @@ AISLE_M = 1.6
 """Walkway before the first row of a stand [m]."""
 
 _MARGIN_M, _APART_M, _VERGE_M = 6.0, 9.0, 4.0
-_MODULE_M, _BAY_ROWS_M = 16.6, 5.0
+_MODULE_M = 16.6
+"""Depth of two rows of 5 m bays and the aisle between them."""
 
 
 @dataclass(frozen=True, eq=False)

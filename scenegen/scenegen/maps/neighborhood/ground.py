@@ -3,29 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 import shapely
 
 from scenegen.classes import Semantic
+from scenegen.geometry.fineness import Fineness, ground_below
 from scenegen.geometry.ground import Region, drape
 from scenegen.geometry.part import Part
 from scenegen.geometry.planar import Triangulation, triangulate
-from scenegen.geometry.scatter import contact_points, finer_near
+from scenegen.geometry.scatter import contact_points
 from scenegen.maps.neighborhood.markings import marking_quads
 from scenegen.maps.neighborhood.outskirts import far_regions
 from scenegen.maps.neighborhood.parcels import Parcel
 from scenegen.maps.neighborhood.streets import FAR_M, KERB_M, StreetPlan
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
 
-_FINE_M, _COARSE_M, _NEAR_M = 3.0, 4.6, 3.5
-"""Spacing of the lattice within `_NEAR_M` of walls and cars, and elsewhere."""
-_WALL_ROW = (1.9, 1.0)
-"""Spacing, distance: the row of points along walls, and the spacing on the contact line itself."""
-_LINE_M, _CAR_LINE_M = 3.4, 1.6
+_FINENESS = Fineness(
+    lattice_m=(3.0, 4.6), near_m=3.5, wall_row_m=(1.9, 1.0), line_m=3.4, car_line_m=1.6, road_grain_m=0.7,
+    grain_m=1.1,
+)  # fmt: skip
 _CAR_ROW, _FENCE_ROW = (2.0, 0.7), (2.6, 0.8)
-_ROAD_GRAIN_M, _GRAIN_M = 0.7, 1.1
+"""Spacing, distance of rows of points around cars and along fences."""
 _TUCK_M, _SILL_M, _GRID_M = 0.01, 0.15, 0.002
 _WATER_BELOW_M = 0.14
 
@@ -60,46 +59,21 @@ def build_ground(
     regions += _streets(plan, shop, rng)
     regions += _paving(parcels, plan, shop, rng)
     regions += _pools(parcels, shop, rng)
-    regions += _below_cars(cars, regions)
+    regions += ground_below(shapely.buffer(cars, -_SILL_M, join_style="mitre"), regions)
     solid = shapely.union_all(np.asarray(holes, dtype=object), grid_size=_GRID_M)
     whole = list(shapely.get_parts(shapely.buffer(solid, -_TUCK_M, join_style="mitre")))
     regions += [Region(p, regions[0].surface, 0, 0, hole=True) for p in whole]
-    regions = [replace(r, grain_m=_grain(r)) for r in regions]
+    regions = _FINENESS.grained(regions)
     half = float(np.abs(plan.outline.bounds).max())
     strips = shapely.buffer(borders, 0.05, cap_style="flat")
     plane = triangulate(
         [r.outline for r in regions],
-        _lattice(plan, whole, cars, borders, rng),
-        np.array([_line_spacing(r) for r in regions]),
+        _FINENESS.lattice(plan.outline, whole, [cars, borders], FAR_M, rng),
+        np.array([_FINENESS.line_spacing(r) for r in regions]),
         (half * 1.03, 0.2),
         np.concatenate([contact_points(list(cars), *_CAR_ROW), contact_points(list(strips), *_FENCE_ROW)]),
     )
     return drape(plane, regions, shop.relief), plane
-
-
-def _lattice(
-    plan: StreetPlan,
-    solid: Sequence[shapely.Polygon],
-    cars: np.ndarray,
-    borders: np.ndarray,
-    rng: np.random.Generator,
-) -> np.ndarray:
-    """Free points: a row along walls, a lattice that is finer near what casts shadows, coarser bands farther out."""
-    near = np.concatenate([np.asarray(solid, dtype=object), cars, borders])
-    lattice = finer_near(plan.outline, near, (_FINE_M, _COARSE_M), _NEAR_M, FAR_M, rng)
-    return np.concatenate([contact_points(solid, *_WALL_ROW), lattice])
-
-
-def _line_spacing(region: Region) -> float:
-    """Largest distance of points along an outline [m]."""
-    if region.hole:
-        return _WALL_ROW[0]
-    return _CAR_LINE_M if region.lumped and not region.merge_m else _LINE_M
-
-
-def _grain(region: Region) -> float:
-    """Size of the cells that have one site at most [m]."""
-    return _ROAD_GRAIN_M if region.semantic == int(Semantic.ROAD) else _GRAIN_M
 
 
 def _commons(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Generator) -> list[Region]:
@@ -140,7 +114,8 @@ def _streets(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Genera
     paint = shop.palette.special("asphalt_aged", "paint", solar_absorptance=0.55)
     marking, quads = shop.builder.new_objects(), shapely.polygons(marking_quads(plan, rng))
     return regions + [
-        Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True, merge_m=_LINE_M) for q in quads
+        Region(q, paint, int(Semantic.ROAD_MARKING), marking, lumped=True, merge_m=_FINENESS.line_m)
+        for q in quads
     ]
 
 
@@ -180,16 +155,3 @@ def _pools(parcels: Sequence[Parcel], shop: NeighborhoodWorkshop, rng: np.random
             owner = shop.builder.new_objects()
             regions.append(Region(pool, skin, int(Semantic.WATER), owner, level, absolute=True))
     return regions
-
-
-def _below_cars(cars: np.ndarray, regions: Sequence[Region]) -> list[Region]:
-    """The ground below each car, with a site of its own: beside the car it is another world."""
-    if not len(cars):
-        return []
-    whole = [r for r in regions if not r.lumped]
-    tree = shapely.STRtree(np.array([r.outline for r in whole], dtype=object))
-    car, ground = tree.query(shapely.centroid(cars), predicate="intersects")
-    top = np.zeros(len(cars), np.int64)
-    np.maximum.at(top, car, ground)
-    dark = shapely.buffer(cars, -_SILL_M, join_style="mitre")
-    return [replace(whole[k], outline=c, lumped=True) for c, k in zip(dark, top.tolist(), strict=True)]

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
-from jaxtyping import Float64
 
 from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region
@@ -15,6 +14,7 @@ from scenegen.geometry.part import Part
 from scenegen.geometry.placement import clear_of, first_come, rectangles
 from scenegen.geometry.planar import Triangulation
 from scenegen.geometry.relief import Relief
+from scenegen.geometry.standing import draped
 from scenegen.geometry.template import Template, place
 from scenegen.maps.neighborhood.streets import CARRIAGEWAY_M, FAR_M, StreetPlan, road_lines
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
@@ -69,23 +69,7 @@ def lie_of(plane: Triangulation, plan: StreetPlan, relief: Relief) -> Relief:
     near = shapely.convex_hull(plan.outline).buffer(_FINE_RING_M, quad_segs=4)
     shapely.prepare(near)
     corners = plane.points[plane.triangles]
-    outside = corners[~shapely.contains_xy(near, corners.mean(axis=1))]
-    tree = shapely.STRtree(shapely.polygons(outside))
-
-    def height(xy: Float64[np.ndarray, "points 2"]) -> Float64[np.ndarray, "points"]:
-        result = relief(xy)
-        point, triangle = tree.query(shapely.points(xy), predicate="intersects")
-        a, b, c = (outside[triangle, k] for k in range(3))
-        share = [_doubled(p, q, xy[point]) / _doubled(a, b, c) for p, q in ((b, c), (c, a), (a, b))]
-        result[point] = sum(w * relief(v) for w, v in zip(share, (a, b, c), strict=True))
-        return result
-
-    return height
-
-
-def _doubled(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """Twice the signed area of triangles."""
-    return np.asarray((b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0]))
+    return draped(corners[~shapely.contains_xy(near, corners.mean(axis=1))], relief)
 
 
 def far_objects(
