@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -60,7 +61,7 @@ def run(arguments: Sequence[str]) -> int:
     from scenegen_datasets.exports.engine import Request, export
 
     dataset = command.dataset
-    out = command.out or dataset.absolute().with_name(f"{dataset.absolute().name}-{command.to}")
+    out = command.out or _beside(dataset, command.to)
     options = Options(
         gain=command.gain,
         gain_K=command.gain_K,
@@ -86,6 +87,12 @@ def run(arguments: Sequence[str]) -> int:
         f"{outcome.root}: {outcome.frames:,} frames of {outcome.clips:,} clips as {outcome.to}, {size(outcome.bytes)}"
     )
     return 0
+
+
+def _beside(dataset: Path, to: str) -> Path:
+    """Where an export goes if nobody says; by the dataset's name as it was given, be that a link."""
+    whole = Path(os.path.abspath(dataset))  # noqa: PTH100  resolve() follows links
+    return whole.parent / f"{whole.name}-{to}"
 
 
 def _formats() -> str:

@@ -24,11 +24,10 @@ def unpack(root: Path) -> Iterator[Seen]:
             exact = {
                 "thermal": cv2.imread(str(path), cv2.IMREAD_UNCHANGED),
                 "depth": cv2.imread(str(home / f"{stem}.depth.tiff"), cv2.IMREAD_UNCHANGED),
-                "flow": np.stack([flow["u"], flow["v"]], axis=-1),
-                "radiance": truth["radiance"],
-                "temperature": truth["temperature"],
-                "instance": truth["instance"],
+                **_in_memory(truth),
             }
+            if flow:
+                exact["flow"] = np.stack([flow["u"], flow["v"]], axis=-1)
             yield Seen(
                 facts["key"],
                 exact,
@@ -41,22 +40,31 @@ def unpack(root: Path) -> Iterator[Seen]:
 def _channels(path: Path) -> dict[str, np.ndarray]:
     import OpenEXR
 
+    if not path.exists():  # none of its layers is stored
+        return {}
     channels = OpenEXR.File(str(path), True, False).channels()
     return {name: channel.pixels for name, channel in channels.items()}
+
+
+def _in_memory(channels: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Layers of one channel under their own names, in the types of the dataset's page."""
+    kinds = {"semantic": np.uint8, "material": np.uint16, "instance": np.uint32, "covisible": bool}
+    kinds |= {"radiance": np.float32, "temperature": np.float32}
+    return {name: channels[name].astype(kind) for name, kind in kinds.items() if name in channels}
 
 
 def exr(root: Path) -> Iterator[Seen]:
     """OpenEXR's own module; header attributes for pose, camera and time."""
     import OpenEXR
 
-    names = {"thermal": np.uint16, "semantic": np.uint8, "material": np.uint16, "instance": np.uint32}
     for path in sorted(p for home in _drives(root) for p in home.glob("*.exr")):
         file = OpenEXR.File(str(path), True, False)
         header, pixels = file.header(), {n: c.pixels for n, c in file.channels().items()}
-        exact = {name: pixels[name].astype(kind) for name, kind in names.items()}
-        exact |= {"depth": pixels["Z"], "radiance": pixels["radiance"], "temperature": pixels["temperature"]}
-        exact["flow"] = np.stack([pixels["forward.u"], pixels["forward.v"]], axis=-1)
-        exact["covisible"] = pixels["forward.covisible"].astype(bool)
+        exact = {**_in_memory(pixels), "thermal": pixels["thermal"].astype(np.uint16), "depth": pixels["Z"]}
+        if "forward.u" in pixels:
+            exact["flow"] = np.stack([pixels["forward.u"], pixels["forward.v"]], axis=-1)
+        if "forward.covisible" in pixels:
+            exact["covisible"] = pixels["forward.covisible"].astype(bool)
         assert header["unit.Z"] == "m"
         pose, K = (np.array(json.loads(header[name])) for name in ("world_from_camera", "K"))
         yield Seen(header["key"], exact, pose=pose, K=K, time_s=float(header["time_s"]))
@@ -68,16 +76,17 @@ def hf(root: Path) -> Iterator[Seen]:
 
     loaded = datasets.load_dataset(str(root), cache_dir=str(root.parent / "hf-cache"))
     for split in loaded.values():
-        arrays, rest = split.with_format("numpy", columns=["flow"]), split.remove_columns("flow")
+        flows = split.with_format("numpy", columns=["flow"]) if "flow" in split.features else None
+        rest = split.remove_columns([name for name in ("flow",) if flows is not None])
         for k in range(len(split)):
             row = rest[k]
-            exact = {
-                "thermal": np.array(row["thermal"], np.uint16),
-                "depth": np.array(row["depth"]),
-                "semantic": np.array(row["semantic"]),
-                "covisible": np.array(row["covisible"]) > 127,
-                "flow": np.asarray(arrays[k]["flow"]),
-            }
+            exact = {"thermal": np.array(row["thermal"], np.uint16), "depth": np.array(row["depth"])}
+            if "semantic" in row:
+                exact["semantic"] = np.array(row["semantic"])
+            if "covisible" in row:
+                exact["covisible"] = np.array(row["covisible"]) > 127
+            if flows is not None:
+                exact["flow"] = np.asarray(flows[k]["flow"])
             assert row["is_pair"] == (row["frame"] > 0)
             assert "wind_mps" in json.loads(row["weather"])
             pose, K = (np.array(row[name], float) for name in ("world_from_camera", "K"))
@@ -92,6 +101,9 @@ def zarr(root: Path) -> Iterator[Seen]:
     for split in sorted(store.group_keys()):
         for name in store[split].attrs["clips"]:
             yield from _stacked(name, store[f"{split}/{name}"])
+            _check_axes(
+                {a: (x.metadata.dimension_names, x.shape) for a, x in store[f"{split}/{name}"].arrays()}
+            )
             assert store[f"{split}/{name}"].attrs["clip"]["job"]["split"] == split
 
 
@@ -104,6 +116,15 @@ def hdf5(root: Path) -> Iterator[Seen]:
             assert file["depth"].attrs["unit"] == "m"
             assert json.loads(file.attrs["clip"])["job"]["split"] == path.parent.name
             yield from _stacked(path.stem, file)
+            _check_axes({name: (tuple(x.attrs["axes"]), x.shape) for name, x in file.items()})
+
+
+def _check_axes(arrays: dict[str, tuple[tuple[str, ...], tuple[int, ...]]]) -> None:
+    """As `xarray.open_zarr` demands: every axis has a name, and within a clip a name has one length."""
+    lengths: dict[str, int] = {}
+    for name, (axes, shape) in arrays.items():
+        for axis, length in zip(axes, shape, strict=True):
+            assert lengths.setdefault(axis, length) == length, (name, axis)
 
 
 def _stacked(name: str, arrays: object) -> Iterator[Seen]:
@@ -147,6 +168,8 @@ def _rerun_frame(key: str, row: dict[str, np.ndarray]) -> Seen:
     kinds |= {"depth": ("DepthImage", np.float32), "semantic": ("SegmentationImage", np.uint8)}
     exact = {}
     for name, (kind, dtype) in kinds.items():
+        if f"{camera}/{name}:{kind}:format" not in row:
+            continue
         form = row[f"{camera}/{name}:{kind}:format"]
         data = row[f"{camera}/{name}:{kind}:buffer"].view(dtype)
         exact[name] = data.reshape(form["height"], form["width"])

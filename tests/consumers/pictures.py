@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickletools
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -31,34 +32,63 @@ def _drives(root: Path) -> Iterator[Path]:
         yield from sorted((root / split).glob("*-*-*"))
 
 
+def _as_stored(path: Path) -> np.ndarray:
+    """For loaders that do not convert what Pillow opens, but index three channels: one of them, as all are equal."""
+    image = np.array(Image.open(path))
+    assert image.dtype == np.uint8 and image.shape[2:] == (3,), (path, image.shape)
+    assert (image == image[..., :1]).all()
+    return image[..., 0]
+
+
 def kitti(root: Path) -> Iterator[Seen]:
-    """Depth: ``disp_read``/``depth_read`` of the development kits, flow: ``flow_read``, poses: odometry benchmark."""
-    for drive in _drives(root):
-        poses = np.loadtxt(drive / "poses.txt").reshape(-1, 3, 4)
-        times = np.loadtxt(drive / "times.txt")
-        lines = (drive / "calib_cam_to_cam.txt").read_text().splitlines()
-        calibration = dict(line.split(": ", 1) for line in lines)
-        P = np.array(calibration["P_rect_02"].split(), float).reshape(3, 4)
-        names = sorted(p.name for p in (drive / "image_02/data").iterdir())
-        assert len(names) == len(poses) == len(times)
-        for k, name in enumerate(names):
-            depth = np.array(Image.open(drive / "proj_depth/groundtruth/image_02" / name), np.uint16)
-            flows = [_kitti_flow(drive / folder / name) for folder in ("flow_occ", "flow_noc")]
-            yield Seen(
-                f"{drive.name}-{int(name[:-4]):04d}",
-                depth_m=_missing(depth, 1 / 256),
-                flow_px=flows[0],
-                flow_seen_px=flows[1],
-                grey=np.array(Image.open(drive / "image_02/data" / name).convert("RGB"))[..., 1],
-                gain=_gain(drive / "gain.json"),
-                pose_from_first=np.vstack([poses[k], [0, 0, 0, 1]]),
-                K=moved(P[:, :3], 0.5),
-                time_s=float(times[k]),
-            )
+    """Sequences as `pykitti.odometry` finds them; depth and flow as development kits and RAFT's `KITTI` read them."""
+    for split in SPLITS:
+        flows = _kitti_flows(root / split / "KittiFlow" / "training")
+        for home in sorted((root / split / "sequences").glob("*")):
+            poses = np.loadtxt(root / split / f"poses/{home.name}.txt").reshape(-1, 3, 4)
+            times = np.loadtxt(home / "times.txt")
+            lines = (home / "calib.txt").read_text().splitlines()
+            calibration = {
+                name: np.array(row.split(), float) for name, row in (x.split(":", 1) for x in lines)
+            }
+            P0, P2, _ = (calibration[name].reshape(3, 4) for name in ("P0", "P2", "Tr"))
+            assert P0[0, 3] == P2[0, 3] == 0.0, "the poses are those of camera 0"
+            images = sorted((home / "image_2").glob("*.png"))
+            greys = [np.array(Image.open(path).convert("RGB"))[..., 1] for path in images]
+            assert len(images) == len(poses) == len(times)
+            for k, grey in enumerate(greys):
+                path = root / split / home.name / f"proj_depth/groundtruth/image_02/{k:010d}.png"
+                first, second, *flow = flows.pop(f"{home.name}-{k:04d}", (None,) * 4)
+                assert first is None or (np.array_equal(first, grey) and np.array_equal(second, greys[k + 1]))
+                assert (first is None) == (flow[0] is None)
+                yield Seen(
+                    f"{home.name}-{k:04d}",
+                    depth_m=_missing(np.array(Image.open(path), np.uint16), 1 / 256),
+                    flow_px=flow[0],
+                    flow_seen_px=flow[1],
+                    grey=grey,
+                    gain=_gain(home / "gain.json"),
+                    pose_from_first=np.vstack([poses[k], [0, 0, 0, 1]]),
+                    K=moved(P2[:, :3], 0.5),
+                    time_s=float(times[k]),
+                )
+        assert not flows
 
 
-def _kitti_flow(path: Path) -> np.ndarray | None:
-    if not path.exists():
+def _kitti_flows(home: Path) -> dict[str, tuple[np.ndarray | None, ...]]:
+    """Both pictures and both kinds of flow by key, paired by the order of names as the flow loaders pair them."""
+    lists = [sorted(home.glob(f"image_2/*_{n}.png")) for n in (10, 11)]
+    lists += [sorted(home.glob(f"flow_{kind}/*_10.png")) for kind in ("occ", "noc")]
+    lists[3] = lists[3] or [None] * len(lists[2])  # type: ignore[list-item]  # of a dataset without covisibility
+    found = {}
+    for first, second, *flows in zip(*lists, strict=True):
+        pictures = (np.array(Image.open(path))[..., 0] for path in (first, second))
+        found[first.name[: -len("_10.png")]] = (*pictures, *map(_kitti_flow, flows))
+    return found
+
+
+def _kitti_flow(path: Path | None) -> np.ndarray | None:
+    if path is None:
         return None
     flow = cv2.imread(str(path), cv2.IMREAD_ANYDEPTH | cv2.IMREAD_COLOR)[:, :, ::-1].astype(np.float64)
     return np.where(flow[..., 2:] > 0, (flow[..., :2] - 2**15) / 64.0, np.nan)
@@ -77,10 +107,14 @@ def tartanair(root: Path) -> Iterator[Seen]:
             bytes_ = cv2.imread(str(home / f"depth_lcam_front/{name}_depth.png"), cv2.IMREAD_UNCHANGED)
             depth = np.squeeze(bytes_.view("<f4"), axis=-1)
             flow = _tartan_flow(home / f"flow_lcam_front/{k:06d}_{k + 1:06d}_flow.png")
-            seg = cv2.imread(str(home / f"seg_lcam_front/{name}_seg.png"), cv2.IMREAD_UNCHANGED)
+            exact = {"depth": np.where(depth == 1e5, np.float32(np.inf), depth)}
+            if (home / "seg_lcam_front").exists():
+                exact["semantic"] = cv2.imread(
+                    str(home / f"seg_lcam_front/{name}_seg.png"), cv2.IMREAD_UNCHANGED
+                )
             yield Seen(
                 f"{home.parent.parent.name}-{int(home.name[1:]):03d}-{k:04d}",
-                exact={"depth": np.where(depth == 1e5, np.float32(np.inf), depth), "semantic": seg},
+                exact=exact,
                 flow_px=flow[0] if flow else None,
                 flow_seen_px=flow[1] if flow else None,
                 grey=cv2.imread(str(home / f"image_lcam_front/{name}.png"))[..., 0],
@@ -132,6 +166,7 @@ def ms2(root: Path) -> Iterator[Seen]:
     halves = [name for when in ("day", "night") for name in _sequences(root / f"test_{when}_list.txt")]
     assert sorted(_sequences(root / "test_list.txt")) == sorted(halves)
     for name in names:
+        _check_harmless(root / "sync_data" / name / "calib.npy")
         calibration = np.load(root / "sync_data" / name / "calib.npy", allow_pickle=True).item()
         baseline = abs(calibration["T_thrR"][0].astype(np.float32)) * 0.001
         assert baseline == 0.0 and np.array_equal(calibration["R_nir2thr"], np.eye(3))
@@ -150,6 +185,16 @@ def ms2(root: Path) -> Iterator[Seen]:
                 pose_from_first=pose,
                 K=moved(calibration["K_thrL"], 0.5),
             )
+
+
+def _check_harmless(path: Path) -> None:
+    """The only names in it are two classes of numpy that scanners of pickles let pass."""
+    data = path.read_bytes()
+    start = 10 + int.from_bytes(data[8:10], "little")
+    operations = list(pickletools.genops(data[start:]))
+    names = {argument for operation, argument, _ in operations if operation.name in ("GLOBAL", "INST")}
+    assert names == {"numpy ndarray", "numpy dtype"}
+    assert not any(operation.name in ("STACK_GLOBAL", "EXT1", "EXT2", "EXT4") for operation, *_ in operations)
 
 
 def _sequences(path: Path) -> list[str]:
@@ -172,7 +217,7 @@ def filelist(root: Path, kind: str = "kitti") -> Iterator[Seen]:
             yield Seen(
                 Path(image).stem,
                 depth_m=far if kind == "vkitti2" else _missing(values, 1 / 256),
-                grey=cv2.imread(str(root / image))[..., 2],
+                grey=_as_stored(root / image) if kind == "zoe" else cv2.imread(str(root / image))[..., 2],
                 gain=_gain(root / f"gain/{Path(image).parent.name}.json"),
                 K=_focal(float(focal[0]), values.shape) if focal else None,
             )

@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 
 from consumers.geometry import moved, quaternion_pose
-from consumers.pictures import _drives, _gain
+from consumers.pictures import _as_stored, _drives, _gain
 from consumers.seen import Seen
 
 
@@ -27,7 +27,7 @@ def nerfstudio(root: Path) -> Iterator[Seen]:
             yield Seen(
                 f"{home.name}-{k:04d}",
                 depth_m=np.where(depth == 0, np.nan, depth.astype(np.float64)),
-                grey=cv2.imread(str(home / frame["file_path"]))[..., 0],
+                grey=_as_stored(home / frame["file_path"]),
                 gain=_gain(home / "gain.json"),
                 pose=pose,
                 K=K,
@@ -51,7 +51,7 @@ def colmap(root: Path) -> Iterator[Seen]:
             assert camera == "1"
             qw, qx, qy, qz, *place = map(float, numbers)
             camera_from_world = quaternion_pose(np.array(place), np.array([qx, qy, qz, qw]))
-            grey = cv2.imread(str(home / "images" / name))[..., 0]
+            grey = _as_stored(home / "images" / name)  # gsplat and 3D Gaussian splatting do not convert
             tracked += _check_points(tail, points, camera_from_world, K, int(image_id), grey)
             depth = _array_file(home / f"stereo/depth_maps/{name}.geometric.bin")
             assert depth.shape == (int(height), int(width))
@@ -96,16 +96,16 @@ def tum(root: Path, unit_m: float = 1 / 5000) -> Iterator[Seen]:
     for home in _drives(root):
         lists = [_list(home / name) for name in ("rgb.txt", "depth.txt", "groundtruth.txt")]
         assert lists[0].keys() == lists[1].keys() == lists[2].keys()
-        settings = dict(line.split(": ") for line in (home / "camera.yaml").read_text().splitlines()[1:])
-        fx, fy, cx, cy = (float(settings[f"Camera.{name}"]) for name in ("fx", "fy", "cx", "cy"))
-        assert float(settings["DepthMapFactor"]) == 1 / unit_m
+        settings = cv2.FileStorage(str(home / "camera.yaml"), cv2.FILE_STORAGE_READ)
+        fx, fy, cx, cy = (settings.getNode(f"Camera.{name}").real() for name in ("fx", "fy", "cx", "cy"))
+        assert settings.getNode("DepthMapFactor").real() == 1 / unit_m
         for k, time in enumerate(sorted(lists[0])):
             values = cv2.imread(str(home / lists[1][time][0]), cv2.IMREAD_UNCHANGED)
             pose = np.array(lists[2][time], float)
             yield Seen(
                 f"{home.name}-{k:04d}",
                 depth_m=np.where(values == 0, np.nan, values / (1 / unit_m)),
-                grey=cv2.imread(str(home / lists[0][time][0]))[..., 0],
+                grey=_as_stored(home / lists[0][time][0]),  # `generate_pointcloud` refuses other modes
                 gain=_gain(home / "gain.json"),
                 pose=quaternion_pose(pose[:3], pose[3:]),
                 K=moved(np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]]), 0.5),

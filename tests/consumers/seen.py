@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -74,6 +74,11 @@ class Original:
             for frame in range(1, job.frames):
                 self._positions[job.key(frame)] = (len(self._positions), clip)
 
+    def sees(self, names: Collection[str]) -> set[str]:
+        """What can be compared, of `names`: not layers that are not stored, nor what is made of them."""
+        made_of = {"flow_px": {"flow"}, "flow_seen_px": {"flow", "covisible"}, **{x: {x} for x in EXACT}}
+        return {name for name in names if made_of.get(name, set()) <= set(self._source.layers)}
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._positions)
 
@@ -105,12 +110,12 @@ def compare(seen: Seen, sample: Mapping[str, Any], rule: Rule) -> dict[str, floa
         errors[name] = 0.0
     if seen.depth_m is not None:
         errors["depth_m"] = _depth(seen.depth_m, sample["depth"].astype(np.float64), rule)
-    for name, flow, kept in (
-        ("flow_px", seen.flow_px, True),
-        ("flow_seen_px", seen.flow_seen_px, sample.get("covisible", True)),
-    ):
-        if flow is not None:
-            errors[name] = _flow(flow, sample["flow"].astype(np.float64), kept)
+    if seen.flow_px is not None:
+        errors["flow_px"] = _flow(seen.flow_px, sample["flow"].astype(np.float64), True)
+    if seen.flow_seen_px is not None and "covisible" in sample:
+        errors["flow_seen_px"] = _flow(
+            seen.flow_seen_px, sample["flow"].astype(np.float64), sample["covisible"]
+        )
     if seen.grey is not None:
         errors["grey"] = _grey(seen.grey, seen.gain, sample)
     pose = sample["world_from_camera"]
@@ -123,7 +128,8 @@ def compare(seen: Seen, sample: Mapping[str, Any], rule: Rule) -> dict[str, floa
             errors[name] = float(np.abs(found - wanted).max())
             assert errors[name] <= rule.pose * (1.0 + np.abs(wanted).max()), (seen.key, name, found, wanted)
     if seen.time_s is not None:
-        assert abs(seen.time_s - sample["time_s"]) <= rule.time_s + 1e-12
+        errors["time_s"] = abs(seen.time_s - sample["time_s"])
+        assert errors["time_s"] <= rule.time_s + 1e-12, (seen.key, seen.time_s, sample["time_s"])
     return errors
 
 

@@ -60,3 +60,33 @@ def test_help_lists_the_formats(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["export", "--help"]) == 0
     told = capsys.readouterr().out
     assert all(f"\n  {name} " in told for name in ("unpack", "kitti", "tartanair", "nerfstudio", "rerun"))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["/", "--to", "kitti"], "no dataset at /"),
+        (["DATA", "--to", "../kitti"], "unknown format"),
+        (["DATA", "--to", "tum", "--depth-unit-m", "1e-320"], "--depth-unit-m 9.99989e-321"),
+        (["DATA", "--to", "kitti", "--out", "/proc/export"], "cannot be used"),
+        (["DATA", "--to", "kitti", "--out", "x" * 300], "File name too long"),
+        (["DATA", "--to", "kitti", "--split", "vall"], "perhaps you meant 'val'"),
+    ],
+)
+def test_what_cannot_be_is_one_line(
+    arguments: list[str], said: str, finished_dataset: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    given = [str(finished_dataset) if word == "DATA" else word for word in arguments]
+    assert main(["export", *given]) == 2
+    told = capsys.readouterr()
+    assert said in told.err and told.err.count("\n") == 1 and told.out == ""
+
+
+def test_default_place_of_a_path_with_dots(
+    finished_dataset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "data").symlink_to(finished_dataset)
+    (tmp_path / "deeper").mkdir()
+    given = tmp_path / "deeper" / ".." / "data" / "."
+    assert main(["export", str(given), "--to", "pix2pix", "--split", "val", "--jobs", "1", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["root"] == str(tmp_path / "data-pix2pix")

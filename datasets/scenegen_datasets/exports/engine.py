@@ -211,10 +211,12 @@ def _chosen(request: Request, source: Source) -> tuple[tuple[int, ...], tuple[Cl
 
 def _prepare(request: Request, plan: _Plan) -> None:
     """Make the directory, after refusing what cannot end well."""
-    root, dataset = request.root.absolute(), request.dataset.absolute()
-    if root == dataset or dataset in root.parents or root in dataset.parents:
-        raise InputError(f"--out {request.root}: lies inside the dataset or around it; choose another --out")
     try:
+        root, dataset = request.root.resolve(), request.dataset.resolve()
+        if root == dataset or dataset in root.parents or root in dataset.parents:
+            raise InputError(
+                f"--out {request.root}: lies inside the dataset or around it; choose another --out"
+            )
         existing = existing_part(request.root)
         missing = [job for job in plan.jobs if not (root / FOLDER / "clips" / f"{job.name}.json").exists()]
         need_bytes = plan.format.bytes_per_pixel * plan.pixels * len(missing) / len(plan.jobs)

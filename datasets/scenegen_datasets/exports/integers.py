@@ -5,11 +5,8 @@ Rounding is to the nearest step, so that a value that fits is wrong by half a st
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from jaxtyping import Bool, Float32, UInt16
-from numpy.typing import NDArray
 
 Depth = Float32[np.ndarray, "rows columns"]
 Flow = Float32[np.ndarray, "rows columns 2"]
@@ -81,17 +78,3 @@ def add(counts: dict[str, int], more: dict[str, int]) -> None:
     """Add counts by name."""
     for name, number in more.items():
         counts[name] = counts.get(name, 0) + number
-
-
-def png(array: NDArray[Any]) -> bytes:
-    """PNG of 8 or 16 bits, one to four channels in OpenCV's order (blue first).
-
-    Level 1 with run lengths and one filter: measured for counts in `scenegen_datasets.codecs.png`.
-    """
-    import cv2
-
-    options = [cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_RLE]
-    if hasattr(cv2, "IMWRITE_PNG_FILTER"):  # since 4.12
-        options += [cv2.IMWRITE_PNG_FILTER, cv2.IMWRITE_PNG_FILTER_SUB]
-    _, data = cv2.imencode(".png", np.ascontiguousarray(array), options)
-    return bytes(data)

@@ -16,6 +16,10 @@ ENCODINGS = ("counts", "a65c")
 """What sixteen bits of thermal mean: our counts, or those of the camera that recorded MS2."""
 
 
+LEAST_M, MOST_M = 1e-6, 1e6
+"""Lengths that make sense as a step or as a cap of depth."""
+
+
 @dataclass(frozen=True)
 class Options:
     """Choices that change what an export holds; they are part of its identity.
@@ -57,9 +61,9 @@ class Options:
                 f"--gain-K {low:g} {high:g}: give two temperatures in kelvin, the lower one first"
             )
         for name in ("depth_cap_m", "depth_unit_m"):
-            if not 0.0 < getattr(self, name) < math.inf:
+            if not LEAST_M <= getattr(self, name) <= MOST_M:
                 raise InputError(
-                    f"--{name.replace('_', '-')} {getattr(self, name):g}: give a positive length [m]"
+                    f"--{name.replace('_', '-')} {getattr(self, name):g}: give a length of {LEAST_M:g} to {MOST_M:g} m"
                 )
 
     def heeded(self, names: Collection[str], by: str) -> dict[str, Any]:

@@ -18,6 +18,9 @@ from types import TracebackType
 from scenegen.foundation.atomic import explained, make_directories
 from scenegen.foundation.errors import ScenegenError
 
+_PROBE_BYTES = 4 << 20
+"""More than the largest compressed frame of a layer, the unit in which libraries write."""
+
 
 class Stage:
     """A place to write files that `commit` moves to where they belong.
@@ -99,13 +102,40 @@ class Stage:
             raise explained(error, self._root) from error
         return sizes
 
+    def prove_room(self) -> None:
+        """Write a little and remove it again, to learn whether the device still takes it.
+
+        For libraries that write files themselves: on a full device one of them raises an error that does not say so,
+        and another only logs what it could not append.
+
+        Raises
+        ------
+        NoSpaceError
+            If the device is full.
+        """
+        probe = self._work / ".probe"
+        try:
+            probe.write_bytes(bytes(_PROBE_BYTES))
+            probe.unlink()
+        except OSError as error:
+            raise explained(error, self._root) from error
+
     def __enter__(self) -> Stage:
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._clear()
+        """Remove what was not committed; say what a library's failure to write means."""
+        try:
+            if isinstance(error, ScenegenError):
+                return
+            if isinstance(error, OSError):
+                raise explained(error, self._root) from error
+            if isinstance(error, RuntimeError):
+                self.prove_room()
+        finally:
+            self._clear()
 
     def _files(self) -> Iterator[Path]:
         for directory, folders, names in os.walk(self._work):

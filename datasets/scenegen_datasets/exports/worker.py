@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-from scenegen.foundation.atomic import explained
 from scenegen_datasets.codecs import single_threaded
 from scenegen_datasets.exports.clip import Clip
 from scenegen_datasets.exports.marker import FOLDER, Marker, write_marker
@@ -34,10 +33,7 @@ def worker(setup: Mapping[str, Any]) -> Callable[[dict[str, Any], Any], dict[str
         """Write one clip, then its marker."""
         clip = Clip(source, reader, payload["position"])
         with Stage(root, f"{FOLDER}/work/{clip.job.name}") as stage:
-            try:
-                written = target.write(clip, stage, options)
-            except OSError as error:  # of a library that writes files itself
-                raise explained(error, root) from error
+            written = target.write(clip, stage, options)
             write_marker(root, clip.job.name, Marker(stage.commit(), written))
         return {}
 

@@ -40,7 +40,7 @@ def test_a_second_run_writes_nothing(run: Run, tmp_path: Path) -> None:
 def test_what_is_gone_or_cut_is_written_again(run: Run, tree: Tree, tmp_path: Path) -> None:
     run("kitti")
     whole = tree(tmp_path / "out")
-    pictures = sorted((tmp_path / "out/train").rglob("image_02/data/*.png"))
+    pictures = sorted((tmp_path / "out/train").rglob("sequences/*/image_2/*.png"))
     pictures[0].unlink()
     pictures[-1].write_bytes(pictures[-1].read_bytes()[:40])
     outcome = run("kitti")
@@ -130,8 +130,9 @@ def test_bad_wishes_are_one_line(
     assert "\n" not in str(caught.value) and not (tmp_path / "out").exists()
 
 
-def test_out_inside_the_dataset_is_refused(small: Path) -> None:
-    for out in (small, small / "shards", small.parent):
+def test_out_inside_the_dataset_is_refused(small: Path, tmp_path: Path) -> None:
+    (tmp_path / "alias").symlink_to(small)
+    for out in (small, small / "shards", small.parent, tmp_path / "alias" / "new"):
         with pytest.raises(InputError, match="inside the dataset or around it"):
             engine.export(engine.Request(small, out, "kitti"))
 

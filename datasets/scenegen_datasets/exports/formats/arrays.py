@@ -13,8 +13,12 @@ from scenegen_datasets.exports.clip import Clip, Picture
 from scenegen_datasets.exports.formats.exr import PIXEL_LAYERS
 from scenegen_datasets.layers import LAYERS
 
-GEOMETRY = {"time_s": ((), "s"), "world_from_camera": ((4, 4), "m"), "K": ((3, 3), "px")}
-"""Shape and unit of what each frame has beside its layers; all float64."""
+GEOMETRY = {
+    "time_s": ((), (), "s"),
+    "world_from_camera": ((4, 4), ("world", "camera"), "m"),
+    "K": ((3, 3), ("image", "ray"), "px"),
+}
+"""Shape, names of its axes and unit of what each frame has beside its layers; all float64."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +33,7 @@ class Stack:
     dtype : numpy dtype
     unit : str
     axes : tuple of str
-        Names of the axes.
+        Names of the axes; within a clip a name has one length, which xarray insists on.
     """
 
     name: str
@@ -51,12 +55,12 @@ def stacks_of(clip: Clip) -> list[Stack]:
     for name in PIXEL_LAYERS:
         if name in clip.layers:
             layer = LAYERS[name]
-            channels = (len(layer.channels),) if len(layer.channels) > 1 else ()
-            axes = ("frame", "row", "column", "channel")[: 3 + len(channels)]
-            stacks.append(Stack(name, (frames, *clip.shape, *channels), layer.dtype, layer.unit, axes))
-    for name, (shape, unit) in GEOMETRY.items():
-        axes = ("frame", "to", "from")[: 1 + len(shape)]
-        stacks.append(Stack(name, (frames, *shape), "float64", unit, axes))
+            several = len(layer.channels) > 1
+            shape = (frames, *clip.shape, *((len(layer.channels),) if several else ()))
+            axes = ("frame", "row", "column", *(("".join(layer.channels),) if several else ()))
+            stacks.append(Stack(name, shape, layer.dtype, layer.unit, axes))
+    for name, (beside, axes, unit) in GEOMETRY.items():
+        stacks.append(Stack(name, (frames, *beside), "float64", unit, ("frame", *axes)))
     return stacks
 
 

@@ -16,8 +16,9 @@ from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip, Picture
 from scenegen_datasets.exports.format import Format, Written
 from scenegen_datasets.exports.gain import CLIPPED, gain_of
-from scenegen_datasets.exports.integers import add, png
+from scenegen_datasets.exports.integers import add
 from scenegen_datasets.exports.options import Options
+from scenegen_datasets.exports.png import colour_png
 from scenegen_datasets.exports.poses import inverse, numbers, quaternion_xyzw
 from scenegen_datasets.exports.stage import Stage
 
@@ -35,7 +36,7 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
     for picture in clip.pictures("thermal", "depth"):
         name = f"{picture.frame:06d}.png"
         grey = gain.grey(picture["thermal"])
-        stage.put(f"{home}/images/{name}", png(grey))
+        stage.put(f"{home}/images/{name}", colour_png(grey))
         stage.put(f"{home}/stereo/depth_maps/{name}.geometric.bin", depth_map(picture["depth"]))
         seen = _seen(picture, grey)
         images.append(_image(picture, name, seen, total))
@@ -120,7 +121,7 @@ FORMAT = Format(
     lost="thermal beyond the gain; flow, times, ids, temperature, radiance",
     sky="depth 0",
     needs=("thermal", "depth"),
-    bytes_per_pixel=5.2,
+    bytes_per_pixel=5.7,
     write=write,
     heeds=frozenset({"gain", "gain_K"}),
     invalid={CLIPPED: "thermal pixels beyond the gain became black or white"},

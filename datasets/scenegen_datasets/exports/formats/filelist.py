@@ -16,8 +16,9 @@ from scenegen_datasets.exports.clip import Clip
 from scenegen_datasets.exports.format import Exported, Format, Written
 from scenegen_datasets.exports.formats.kitti import INVALID, UNIT_M
 from scenegen_datasets.exports.gain import CLIPPED, gain_of
-from scenegen_datasets.exports.integers import FAR, add, depth_u16, png
+from scenegen_datasets.exports.integers import FAR, add, depth_u16
 from scenegen_datasets.exports.options import Options
+from scenegen_datasets.exports.png import colour_png, png
 from scenegen_datasets.exports.stage import Stage
 from scenegen_datasets.job import SPLITS
 
@@ -34,7 +35,7 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
     counts: dict[str, int] = {}
     focal = 0.0
     for picture in clip.pictures("thermal", "depth", pairs_only=True):
-        stage.put(f"images/{home}/{picture.key}.png", png(gain.grey(picture["thermal"])))
+        stage.put(f"images/{home}/{picture.key}.png", colour_png(gain.grey(picture["thermal"])))
         kitti, misfits = depth_u16(picture["depth"], UNIT_M)
         stage.put(f"depth_256/{home}/{picture.key}.png", png(kitti))
         centimetres, far = depth_u16(picture["depth"], CENTIMETRE_M, sky=VKITTI_FAR, far=VKITTI_FAR)
@@ -78,7 +79,7 @@ FORMAT = Format(
     lost="thermal beyond the gain; flow, poses, ids, temperature, radiance; frame 0 of each clip, which is no pair",
     sky="655.35 m (cm); 0 (1/256 m)",
     needs=("thermal", "depth"),
-    bytes_per_pixel=2.5,
+    bytes_per_pixel=3.0,
     pairs_only=True,
     write=write,
     finish=finish,

@@ -16,8 +16,8 @@ from scenegen_datasets.codecs import png as counts_png
 from scenegen_datasets.codecs import tiff
 from scenegen_datasets.exports.clip import Clip, Picture
 from scenegen_datasets.exports.format import Exported, Format, Written
-from scenegen_datasets.exports.integers import png
 from scenegen_datasets.exports.options import Options
+from scenegen_datasets.exports.png import png
 from scenegen_datasets.exports.stage import Stage
 from scenegen_datasets.job import SPLITS
 

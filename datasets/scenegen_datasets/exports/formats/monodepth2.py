@@ -18,8 +18,9 @@ from scenegen_datasets.exports.clip import Clip
 from scenegen_datasets.exports.format import Exported, Format, Written
 from scenegen_datasets.exports.formats.kitti import INVALID, UNIT_M
 from scenegen_datasets.exports.gain import CLIPPED, gain_of
-from scenegen_datasets.exports.integers import add, depth_u16, png
+from scenegen_datasets.exports.integers import add, depth_u16
 from scenegen_datasets.exports.options import Options
+from scenegen_datasets.exports.png import colour_png, png
 from scenegen_datasets.exports.poses import integer_centres
 from scenegen_datasets.exports.stage import Stage
 from scenegen_datasets.job import SPLITS
@@ -34,7 +35,7 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
     counts: dict[str, int] = {}
     for picture in clip.pictures("thermal", "depth"):
         name = f"{picture.frame:010d}.png"
-        stage.put(f"{home}/image_02/data/{name}", png(gain.grey(picture["thermal"])))
+        stage.put(f"{home}/image_02/data/{name}", colour_png(gain.grey(picture["thermal"])))
         depth, misfits = depth_u16(picture["depth"], UNIT_M)
         stage.put(f"{home}/proj_depth/groundtruth/image_02/{name}", png(depth))
         add(counts, {**misfits, CLIPPED: gain.clipped(picture["thermal"])})
@@ -90,7 +91,7 @@ FORMAT = Format(
     lost="thermal beyond the gain; flow, poses, times, ids, temperature, radiance",
     sky="depth 0",
     needs=("thermal", "depth"),
-    bytes_per_pixel=3.0,
+    bytes_per_pixel=3.5,
     write=write,
     finish=finish,
     heeds=frozenset({"gain", "gain_K"}),

@@ -18,8 +18,9 @@ from scenegen_datasets.exports.clip import Clip
 from scenegen_datasets.exports.format import Exported, Format, Written
 from scenegen_datasets.exports.formats.kitti import INVALID, UNIT_M
 from scenegen_datasets.exports.formats.ms2_calibration import calibration_npy
-from scenegen_datasets.exports.integers import FAR, NEAR, add, depth_u16, png
+from scenegen_datasets.exports.integers import FAR, NEAR, add, depth_u16
 from scenegen_datasets.exports.options import Options
+from scenegen_datasets.exports.png import png
 from scenegen_datasets.exports.poses import integer_centres, numbers, relative_pose
 from scenegen_datasets.exports.stage import Stage
 from scenegen_datasets.job import SPLITS

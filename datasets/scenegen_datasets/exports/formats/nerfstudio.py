@@ -17,8 +17,9 @@ from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip, Picture
 from scenegen_datasets.exports.format import Format, Written
 from scenegen_datasets.exports.gain import CLIPPED, gain_of
-from scenegen_datasets.exports.integers import add, png
+from scenegen_datasets.exports.integers import add
 from scenegen_datasets.exports.options import Options
+from scenegen_datasets.exports.png import colour_png
 from scenegen_datasets.exports.poses import opengl_pose
 from scenegen_datasets.exports.stage import Stage
 
@@ -33,7 +34,7 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
     frames = []
     for picture in clip.pictures("thermal", "depth"):
         name = f"frame_{picture.frame:05d}"
-        stage.put(f"{home}/images/{name}.png", png(gain.grey(picture["thermal"])))
+        stage.put(f"{home}/images/{name}.png", colour_png(gain.grey(picture["thermal"])))
         stage.put(f"{home}/depths/{name}.npy", _npy(picture["depth"]))
         frames.append(
             {
@@ -81,7 +82,7 @@ FORMAT = Format(
     lost="thermal beyond the gain; flow, ids, temperature, radiance",
     sky="depth 0",
     needs=("thermal", "depth"),
-    bytes_per_pixel=5.0,
+    bytes_per_pixel=5.5,
     write=write,
     heeds=frozenset({"gain", "gain_K"}),
     invalid={CLIPPED: "thermal pixels beyond the gain became black or white"},

@@ -11,8 +11,9 @@ from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip
 from scenegen_datasets.exports.format import Format, Written
 from scenegen_datasets.exports.gain import CLIPPED, gain_of
-from scenegen_datasets.exports.integers import add, png
+from scenegen_datasets.exports.integers import add
 from scenegen_datasets.exports.options import Options
+from scenegen_datasets.exports.png import colour_png
 from scenegen_datasets.exports.stage import Stage
 
 CAPPED = "depth_capped"
@@ -26,7 +27,7 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
         depth = picture["depth"].astype(np.float64)
         white = np.minimum(depth / options.depth_cap_m, 1.0) * 255.0
         sides = (gain.grey(picture["thermal"]), np.rint(white).astype(np.uint8))
-        stage.put(f"{clip.job.split}/{picture.key}.png", png(np.hstack(sides)))
+        stage.put(f"{clip.job.split}/{picture.key}.png", colour_png(np.hstack(sides)))
         capped = int((np.isfinite(depth) & (depth > options.depth_cap_m)).sum())
         add(counts, {CLIPPED: gain.clipped(picture["thermal"]), CAPPED: capped})
     stage.put(f"gain/{clip.job.name}.json", pretty(dict(gain.facts)))
@@ -42,7 +43,7 @@ FORMAT = Format(
     lost="depth beyond the cap, thermal beyond the gain; everything else; frame 0 of each clip, which is no pair",
     sky="white, as the cap",
     needs=("thermal", "depth"),
-    bytes_per_pixel=1.0,
+    bytes_per_pixel=2.0,
     pairs_only=True,
     write=write,
     heeds=frozenset({"gain", "gain_K", "depth_cap_m"}),

@@ -32,9 +32,10 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
         _send_static(rr, recording)
         for picture in clip.pictures("thermal", "depth", *optional):
             _send(rr, recording, picture, clip.shape)
-    finally:
         recording.flush()
+    finally:
         recording.disconnect()
+    stage.prove_room()  # what `disconnect` cannot append it only logs
     return Written()
 
 

@@ -17,8 +17,9 @@ from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip, Picture
 from scenegen_datasets.exports.format import Exported, Format, Written
 from scenegen_datasets.exports.gain import CLIPPED, gain_of
-from scenegen_datasets.exports.integers import FLOW_OUTSIDE, add, flow_u16, png
+from scenegen_datasets.exports.integers import FLOW_OUTSIDE, add, flow_u16
 from scenegen_datasets.exports.options import Options
+from scenegen_datasets.exports.png import colour_png, png
 from scenegen_datasets.exports.poses import ned_pose, numbers, quaternion_xyzw
 from scenegen_datasets.exports.stage import Stage
 from scenegen_datasets.job import SPLITS
@@ -41,7 +42,7 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
     optional = [name for name in ("flow", "covisible", "semantic") if name in clip.layers]
     for picture in clip.pictures("thermal", "depth", *optional):
         name = f"{picture.frame:06d}_{_CAMERA}"
-        stage.put(f"{home}/image_{_CAMERA}/{name}.png", png(gain.grey(picture["thermal"])))
+        stage.put(f"{home}/image_{_CAMERA}/{name}.png", colour_png(gain.grey(picture["thermal"])))
         stage.put(f"{home}/depth_{_CAMERA}/{name}_depth.png", depth_png(picture["depth"]))
         if "semantic" in optional:
             stage.put(f"{home}/seg_{_CAMERA}/{name}_seg.png", png(picture["semantic"]))
@@ -106,7 +107,7 @@ FORMAT = Format(
     sky="depth 100,000 m; flow of the rotation",
     needs=("thermal", "depth"),
     takes=("flow", "covisible", "semantic"),
-    bytes_per_pixel=5.0,
+    bytes_per_pixel=5.5,
     write=write,
     finish=finish,
     heeds=frozenset({"gain", "gain_K"}),

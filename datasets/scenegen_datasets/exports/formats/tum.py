@@ -11,8 +11,9 @@ from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip, Picture
 from scenegen_datasets.exports.format import Format, Written
 from scenegen_datasets.exports.gain import CLIPPED, gain_of
-from scenegen_datasets.exports.integers import FAR, NEAR, add, depth_u16, png
+from scenegen_datasets.exports.integers import FAR, NEAR, add, depth_u16
 from scenegen_datasets.exports.options import Options
+from scenegen_datasets.exports.png import colour_png, png
 from scenegen_datasets.exports.poses import integer_centres, numbers, quaternion_xyzw
 from scenegen_datasets.exports.stage import Stage
 
@@ -25,7 +26,7 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
     rgb, depths, poses = [], [], []
     for picture in clip.pictures("thermal", "depth"):
         time = f"{picture.time_s:.6f}"
-        stage.put(f"{home}/rgb/{time}.png", png(gain.grey(picture["thermal"])))
+        stage.put(f"{home}/rgb/{time}.png", colour_png(gain.grey(picture["thermal"])))
         depth, misfits = depth_u16(picture["depth"], options.depth_unit_m)
         stage.put(f"{home}/depth/{time}.png", png(depth))
         add(counts, {**misfits, CLIPPED: gain.clipped(picture["thermal"])})
@@ -70,7 +71,7 @@ FORMAT = Format(
     lost="depth beyond the range, thermal beyond the gain; flow, ids, temperature, radiance",
     sky="depth 0",
     needs=("thermal", "depth"),
-    bytes_per_pixel=2.0,
+    bytes_per_pixel=2.5,
     write=write,
     heeds=frozenset({"gain", "gain_K", "depth_unit_m"}),
     invalid={
