@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from scenegen_datasets.versions.measure import Measures
 
 _SHOWN = 20
+_CLASSES = 12
 
 
 @dataclass(frozen=True)
@@ -59,57 +60,70 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _words(found: Difference) -> Iterator[str]:
-    old, new = found.old, found.new
-    rows = [
-        ("", "old", "new"),
-        ("directory", old.root, new.root),
-        ("version", old.version, new.version),
-        ("recipe id", old.recipe_id[:16], new.recipe_id[:16]),
-        ("content id", old.content_id[:16], new.content_id[:16]),
-    ]
-    for name in old.counts:
-        show = size if name == "shard_bytes" else "{:,}".format
-        rows.append((name.replace("_", " "), show(old.counts[name]), show(new.counts[name])))
-    yield table(rows)
+    yield table(_sides(found))
     if found.recipe:
-        yield f"\nrecipe, {len(found.recipe)} keys differ:"
+        yield f"\nrecipe, {len(found.recipe)} {'key differs' if len(found.recipe) == 1 else 'keys differ'}:"
         yield from (f"  {line}" for line in found.recipe[:_SHOWN])
         if len(found.recipe) > _SHOWN:
             yield f"  ... and {len(found.recipe) - _SHOWN} more (--json lists all)"
-    if old.measures is not None and new.measures is not None:
-        yield from _pixels(old.measures, new.measures)
+    if found.old.measures is not None and found.new.measures is not None and not found.same:
+        yield from _pixels(found.old.measures, found.new.measures)
     yield "\nsame: every sample and every byte of them" if found.same else "\nchanges:"
     yield from (f"  {change.bump.name:5}  {change}" for change in found.changes)
     if found.proposed:
-        yield f"\nas the next version after {old.version}: {found.proposed} ({found.bump.name})"
+        yield f"\nas the next version after {found.old.version}: {found.proposed} ({found.bump.name})"
+
+
+def _sides(found: Difference) -> Iterator[tuple[str, ...]]:
+    old, new = found.old, found.new
+    yield ("", "old", "new", "change")
+    yield ("directory", old.root, new.root, "")
+    yield ("version", old.version, new.version, "")
+    if old.parts or new.parts:
+        yield ("merged of", ", ".join(old.parts) or "-", ", ".join(new.parts) or "-", "")
+    for name, one, other in (
+        ("recipe id", old.recipe_id, new.recipe_id),
+        ("content id", old.content_id, new.content_id),
+    ):
+        yield (name, one[:16], other[:16], "" if one == other else "another")
+    for name in old.counts:
+        show = size if name == "shard_bytes" else "{:,}".format
+        more = new.counts[name] - old.counts[name]
+        sign = "-" if more < 0 else "+"
+        change = f"{sign}{show(abs(more))}" if more else ""
+        yield (name.replace("_", " "), show(old.counts[name]), show(new.counts[name]), change)
 
 
 def _pixels(old: Measures, new: Measures) -> Iterator[str]:
-    from scenegen.classes import CLASSES
     from scenegen_datasets.versions.measure import QUANTILES
 
-    yield f"\npixels of {old.pairs} and {new.pairs} pairs:"
+    yield f"\nwhat {old.pairs:,} and {new.pairs:,} pairs show, spread evenly over each:"
     rows = [("", *(f"{q:.0%}" for q in QUANTILES))]
-    for name, values in (
-        ("depth [m], old", old.depth_m),
-        ("depth [m], new", new.depth_m),
-        ("temperature [K], old", old.temperature_K),
-        ("temperature [K], new", new.temperature_K),
+    for name, before, after in (
+        ("depth [m]", old.depth_m, new.depth_m),
+        ("temperature [K]", old.temperature_K, new.temperature_K),
     ):
-        rows.append((name, *(f"{value:.2f}" for value in values or [float("nan")] * len(QUANTILES))))
+        if before and after:
+            rows.append((f"{name}, old", *(f"{value:.2f}" for value in before)))
+            rows.append((f"{name}, new", *(f"{value:.2f}" for value in after)))
+            rows.append(("  change", *(f"{b - a:+.2f}" for a, b in zip(before, after, strict=True))))
     yield table(rows)
+    yield from _classes(old.classes, new.classes)
+
+
+def _classes(old: Mapping[int, float], new: Mapping[int, float]) -> Iterator[str]:
+    """The classes whose share changed most."""
+    from scenegen.classes import CLASSES
+
     names = {int(kind.id): kind.name for kind in CLASSES}
-    shares = [
-        (k, old.classes.get(k, 0.0), new.classes.get(k, 0.0)) for k in sorted({*old.classes, *new.classes})
-    ]
-    if shares:
-        yield ""
-        yield table(
-            [
-                ("share of pixels", "old", "new", "change"),
-                *(
-                    (names.get(k, str(k)), f"{a:.2%}", f"{b:.2%}", f"{100 * (b - a):+.2f} points")
-                    for k, a, b in shares
-                ),
-            ]
-        )
+    moved = sorted({*old, *new}, key=lambda k: (-abs(new.get(k, 0.0) - old.get(k, 0.0)), k))
+    if not moved:
+        return
+    rows = [("share of pixels", "old", "new", "change")]
+    for k in moved[:_CLASSES]:
+        a, b = old.get(k, 0.0), new.get(k, 0.0)
+        rows.append((names.get(k, str(k)), f"{a:.2%}", f"{b:.2%}", f"{100 * (b - a):+.2f} points"))
+    yield ""
+    yield table(rows)
+    if len(moved) > _CLASSES:
+        yield f"and {len(moved) - _CLASSES} classes that changed less (--json lists all)"

@@ -15,6 +15,8 @@ from scenegen_cli.parse import HelpShown, parse
 if TYPE_CHECKING:
     from scenegen_datasets.info import DatasetInfo
 
+_UNITS = {"m": "m", "km": "km", "deg": "deg", "mps": "m/s", "K": "K"}
+
 
 @dataclass(frozen=True)
 class Info:
@@ -43,20 +45,51 @@ def run(arguments: Sequence[str]) -> int:
 
 
 def _rows(found: DatasetInfo) -> list[tuple[str, str]]:
-    planned = found.pairs_planned
-    state = "complete" if found.complete else f"growing, {planned or '?'} pairs planned"
-    if found.missing:
-        state = f"finished without {len(found.missing)} clips: {', '.join(found.missing[:3])}"
     rows = [
         ("name", f"{found.name} {found.version}".strip()),
-        ("state", state),
+        ("state", _state(found)),
         (
             "pairs",
             f"{found.pairs:,} in {found.clips:,} clips of {found.worlds:,} worlds ({found.frames:,} frames)",
         ),
         ("splits", ", ".join(f"{name} {count:,}" for name, count in found.splits.items())),
+        *_listed("held out", found.held_out or ("nothing but worlds",)),
+        *_listed("merged of", found.parts),
+        ("maps", ", ".join(found.maps) or "-"),
+        ("image", _image(found)),
+        ("layers", ", ".join(found.layers) or "-"),
         ("size", size(found.bytes)),
+        ("licence", found.license),
     ]
-    rows += [(name, f"{low:.4g} to {high:.4g}") for name, (low, high) in found.ranges.items()]
+    rows += [_range(name, *span) for name, span in found.ranges.items()]
     rows += [("recipe id", found.recipe_id), ("content id", found.content_id or "none while it grows")]
     return rows
+
+
+def _state(found: DatasetInfo) -> str:
+    if found.missing:
+        named = ", ".join(found.missing[:3]) + (", ..." if len(found.missing) > 3 else "")
+        return f"finished without {len(found.missing)} of its clips: {named}"
+    if found.complete:
+        return "complete"
+    return f"growing, {'?' if found.pairs_planned is None else f'{found.pairs_planned:,}'} pairs planned"
+
+
+def _listed(name: str, lines: Sequence[str]) -> list[tuple[str, str]]:
+    return [(name if k == 0 else "", line.replace("`", "")) for k, line in enumerate(lines)]
+
+
+def _image(found: DatasetInfo) -> str:
+    if found.grid_px is None or found.band_um is None:
+        return "-"
+    return "{}x{} px, {:g} to {:g} um".format(*found.grid_px, *found.band_um)
+
+
+def _range(name: str, low: float, high: float) -> tuple[str, str]:
+    """A quantity under a name for people, its unit after the numbers: ``air_mean_K`` is ``air mean``, in K."""
+    words, _, unit = name.removeprefix("weather.").rpartition("_")
+    if unit not in _UNITS:
+        words, unit = name.removeprefix("weather."), ""
+    if words.endswith("hour"):
+        unit = "h"
+    return words.replace("_", " "), f"{low:.4g} to {high:.4g} {_UNITS.get(unit, unit)}".rstrip()

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
+from scenegen_datasets.info import worlds_in_words
 from scenegen_datasets.job import SPLITS
 from scenegen_datasets.licence import hub_lines, licence_of, licence_url
 from scenegen_datasets.splits.held_out import HeldOut
@@ -161,7 +162,7 @@ def _parts(d: Mapping[str, Any]) -> list[str]:
     if not d["parts"]:
         return []
     rows = [
-        f"| {part['name']} | {part['version']} | {part['counts']['pairs']} | {_worlds(part)} | "
+        f"| {part['name']} | {part['version']} | {part['counts']['pairs']} | {worlds_in_words(part)} | "
         f"`{part['recipe_id'][:16]}` | `{part['content_id'][:16]}` |"
         for part in d["parts"]
     ]
@@ -173,15 +174,6 @@ def _parts(d: Mapping[str, Any]) -> list[str]:
         *rows,
         "",
     ]
-
-
-def _worlds(part: Mapping[str, Any]) -> str:
-    runs = [
-        f"{map} {first}" if first == last else f"{map} {first} to {last}"
-        for map, spans in part["worlds"].items()
-        for first, last in spans
-    ]
-    return ", ".join(runs)
 
 
 def _licence(d: Mapping[str, Any]) -> list[str]:

@@ -9,7 +9,9 @@ from typing import Any
 
 from scenegen_datasets.description import ranges_of, read_description
 from scenegen_datasets.job import SPLITS
+from scenegen_datasets.licence import licence_of
 from scenegen_datasets.receipt import read_receipt, receipt_paths
+from scenegen_datasets.splits.held_out import HeldOut
 from scenegen_datasets.store import DATASET, read_lock
 
 
@@ -34,6 +36,16 @@ class DatasetInfo:
         Clips of the plan that were not made; unknown, hence empty, while the dataset grows.
     pairs_planned : int or None
         What the recipe asked for.
+    maps, layers : tuple of str
+    grid_px : (int, int) or None
+        Columns and rows of every picture; None before the first clip.
+    band_um : (float, float) or None
+    license : str
+        Of the data, by its SPDX name.
+    held_out : tuple of str
+        What only the test split shows, in words.
+    parts : tuple of str
+        Datasets it was merged of: name, version and worlds.
     """
 
     name: str
@@ -50,6 +62,13 @@ class DatasetInfo:
     ranges: Mapping[str, tuple[float, float]]
     missing: tuple[str, ...]
     pairs_planned: int | None
+    maps: tuple[str, ...]
+    layers: tuple[str, ...]
+    grid_px: tuple[int, int] | None
+    band_um: tuple[float, float] | None
+    license: str
+    held_out: tuple[str, ...]
+    parts: tuple[str, ...]
 
 
 def info(root: Path) -> DatasetInfo:
@@ -83,6 +102,11 @@ def info(root: Path) -> DatasetInfo:
         ranges={name: (low, high) for name, (low, high) in d["ranges"].items()},
         missing=tuple(d["missing"]),
         pairs_planned=planned,
+        maps=tuple(d["maps"]),
+        layers=tuple(layer["name"] for layer in d["layers"]),
+        grid_px=(d["grid"]["width_px"], d["grid"]["height_px"]),
+        band_um=(d["band_um"][0], d["band_um"][1]),
+        **_of_lock(lock),
     )
 
 
@@ -104,4 +128,33 @@ def _growing(root: Path, lock: Mapping[str, Any], planned: int | None) -> Datase
         ranges=ranges_of(r.clip for r in receipts),
         missing=(),
         pairs_planned=planned,
+        maps=tuple(sorted({j.map for j in jobs})),
+        layers=receipts[0].layers if receipts else (),
+        grid_px=(receipts[0].clip.width_px, receipts[0].clip.height_px) if receipts else None,
+        band_um=receipts[0].clip.band_um if receipts else None,
+        **_of_lock(lock),
     )
+
+
+def _of_lock(lock: Mapping[str, Any]) -> dict[str, Any]:
+    """What the lock alone tells."""
+    return {
+        "license": licence_of(lock),
+        "held_out": HeldOut.of_lock(lock).words,
+        "parts": tuple(
+            sorted(
+                f"{part['name']} {part['version']} ({worlds_in_words(part)})"
+                for part in lock.get("parts", ())
+            )
+        ),
+    }
+
+
+def worlds_in_words(part: Mapping[str, Any]) -> str:
+    """Names of the worlds that a merged dataset has from one of its parts: ``city 0 to 15``."""
+    runs = [
+        f"{map} {first}" if first == last else f"{map} {first} to {last}"
+        for map, spans in part["worlds"].items()
+        for first, last in spans
+    ]
+    return ", ".join(runs)

@@ -16,11 +16,13 @@ from scenegen.foundation.lock import DirectoryLock
 from scenegen_datasets.finish import finish
 from scenegen_datasets.info import DatasetInfo, info
 from scenegen_datasets.pictures.preview import write_preview
+from scenegen_datasets.place import check_room
 from scenegen_datasets.receipt import read_receipt
 from scenegen_datasets.render_job import dataset_name
 from scenegen_datasets.store import DATASET, LOCK, RECIPE, check_output, clean, read_lock
+from scenegen_datasets.versions.fitting import check_parts
 from scenegen_datasets.versions.numbers import offset_of, seed_of
-from scenegen_datasets.versions.parts import Part, Piece, check_parts, merged_lock, pieces_of
+from scenegen_datasets.versions.parts import Part, Piece, merged_lock, pieces_of
 from scenegen_datasets.versions.placing import place_clip
 
 Told = Callable[[int, int], None]
@@ -71,7 +73,7 @@ def merge(out: Path, roots: Sequence[Path], *, copy: bool = False, progress: Tol
     DatasetError
         If a part is damaged.
     NoSpaceError
-        If the device is full.
+        If the device is full, or shards that have to be copied would not fit.
     """
     parts = [Part.read(root) for root in roots]
     check_parts(parts)
@@ -79,6 +81,8 @@ def merge(out: Path, roots: Sequence[Path], *, copy: bool = False, progress: Tol
     lock = merged_lock(parts, dataset_name(out))
     offsets = {seed_of(entry): offset_of(entry) for entry in lock["parts"] if offset_of(entry)}
     _prepare(out)
+    if not (out / LOCK).exists():
+        check_room(out, out, _copied_bytes(out, parts, offsets, copy), "merge onto the device of the parts")
     with DirectoryLock(out):
         _begin(out, lock)
         clean(out)
@@ -99,7 +103,9 @@ def _refuse_nesting(out: Path, roots: Sequence[Path]) -> None:
     whole = out.resolve()
     for root in roots:
         part = root.resolve()
-        if whole == part or part in whole.parents or whole in part.parents:
+        if whole == part:
+            raise InputError(f"{out} is one of the parts; merge into a directory of its own")
+        if part in whole.parents or whole in part.parents:
             raise InputError(f"{out} and {root} lie in one another; merge into a directory of its own")
 
 
@@ -112,6 +118,16 @@ def _prepare(out: Path) -> None:
         raise InputError(
             f"{out}: cannot be made: {error.strerror or error}; choose another directory"
         ) from None
+
+
+def _copied_bytes(out: Path, parts: Sequence[Part], offsets: Mapping[int, int], copy: bool) -> int:
+    """Size of the shards that cannot be links."""
+    device = out.stat().st_dev
+    return sum(
+        part.description["counts"]["shard_bytes"]
+        for part in parts
+        if copy or part.root.stat().st_dev != device or any(origin.seed in offsets for origin in part.origins)
+    )
 
 
 def _begin(out: Path, lock: Mapping[str, Any]) -> None:

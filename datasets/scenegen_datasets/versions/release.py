@@ -130,6 +130,10 @@ def _refuse_small_step(root: Path, last: Version, asked: Version, changes: tuple
         return
     named = "; ".join(str(change) for change in changes if change.bump is bump)
     why = f"what changed asks for a {bump.name} step ({named})" if changes else "nothing changed"
+    if asked <= last:
+        raise InputError(
+            f"{root}: {asked} is not above {last}, its last release; release it as {least} or above"
+        )
     raise InputError(f"{root}: {asked} says too little after {last}: {why}; release it as {least} or above")
 
 

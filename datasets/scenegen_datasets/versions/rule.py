@@ -9,6 +9,9 @@ from scenegen_datasets.store import differing_keys
 from scenegen_datasets.versions.semver import Bump
 from scenegen_datasets.versions.state import ClipMark, State
 
+MERGED = "merged"
+"""Key in the recipe of a merged dataset: the recipe ids of its parts."""
+
 _NAMED = 3
 """Clips named in a message; the rest are counted."""
 
@@ -107,6 +110,9 @@ def _about(bump: Bump, clips: Sequence[str], one: str, many: str) -> Iterator[Ch
 def _description(old: State, new: State) -> Iterator[Change]:
     """What tells of samples without changing one."""
     keys = [line.partition(": ")[0] for line in differing_keys(old.recipe, new.recipe)]
+    if MERGED in keys:
+        keys.remove(MERGED)
+        yield Change(Bump.PATCH, "it is made of other parts, or of parts with other recipes")
     if keys:
         more = f" and {len(keys) - _NAMED} more" if len(keys) > _NAMED else ""
         yield Change(Bump.PATCH, f"the recipe has other values for {', '.join(keys[:_NAMED])}{more}")

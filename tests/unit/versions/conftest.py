@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 
 from scenegen.foundation.lock import DirectoryLock
+from scenegen_datasets.layers import DEFAULT_LAYERS
 from scenegen_datasets.lock import make_lock
 from scenegen_datasets.store import create_or_open
 
@@ -81,9 +82,9 @@ SENSOR = {"scale_K": [233.0, 423.0], "linear_in": "radiance", "netd_mk": 50.0}
 
 
 def _make_map(root: Path, map: str, clips: int = 6, **more: Any) -> Path:
-    """A dataset of another map; `more` are recipe keys, and ``change``, which alters a clip's record."""
+    """A dataset of another map; `more` are recipe keys, `shape`, `layers`, and `change`, which alters a record."""
     change = more.pop("change", lambda record: record)
-    shape = more.pop("shape", _FAKES.SHAPE)
+    shape, layers = more.pop("shape", _FAKES.SHAPE), more.pop("layers", DEFAULT_LAYERS)
     camera = {"width_px": shape[1], "band_um": [8.0, 14.0]}
     recipe = {
         "pairs": clips * _FAKES.PAIRS,
@@ -99,7 +100,7 @@ def _make_map(root: Path, map: str, clips: int = 6, **more: Any) -> Path:
     with DirectoryLock(root):
         create_or_open(root, f"map: {map}\n", lock)
         for job in plan:
-            frames = _FAKES.encoded(job, shape=shape)
+            frames = _FAKES.encoded(job, layers, shape)
             record = _FAKES.record(job, shape)
             record = change(replace(record, weather={**record.weather, "cloud_fraction": 0.5}))
             _FAKES.commit_clip(root, record, frames, fingerprint=_FAKES.FINGERPRINT)

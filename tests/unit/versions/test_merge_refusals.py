@@ -15,6 +15,7 @@ import pytest
 from scenegen.foundation.canonical import pretty
 from scenegen.foundation.errors import DatasetError, InputError
 from scenegen_cli.main import main
+from scenegen_datasets.layers import DEFAULT_LAYERS
 from scenegen_datasets.lock import make_lock
 from scenegen_datasets.store import create_or_open, read_lock
 from scenegen_datasets.verify import verify
@@ -68,7 +69,15 @@ def test_one_place_twice_is_refused_whatever_its_clips(
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        ({"shape": (12, 20)}, r"differ in grid.width_px: 16 -> 20"),
+        (
+            {"shape": (12, 20)},
+            r"differ in grid.width_px: 16 -> 20; 'scenegen sense' may give both one camera",
+        ),
+        ({"layers": ("thermal", "depth", "flow")}, r"city stores covisible, instance, .*, .*other does not"),
+        (
+            {"layers": (*DEFAULT_LAYERS, "normal")},
+            r"other stores normal, .*city does not; .* the same layers",
+        ),
         ({"change": lambda r: replace(r, band_um=(7.5, 13.5))}, r"band_um: \[8.0,14.0\] -> \[7.5,13.5\]"),
         (
             {"change": lambda r: replace(r, sensor={**r.sensor, "low_radiance": 1.0})},
@@ -79,7 +88,7 @@ def test_one_place_twice_is_refused_whatever_its_clips(
             "recipe.sensor.netd_mk: 50.0 -> 35.0",
         ),
     ],
-    ids=["grid", "band", "scale", "noise"],
+    ids=["grid", "fewer layers", "more layers", "band", "scale", "noise"],
 )
 def test_what_cannot_be_read_as_one_is_refused(
     make_map: Callable[..., Path],
@@ -124,7 +133,7 @@ def test_places_that_cannot_be_merged_into_or_from(
         ([str(tmp_path / "all"), city, str(tmp_path / "nowhere")], "no dataset at"),
         ([str(tmp_path / "all"), city, str(growing)], "is not finished"),
         ([str(tmp_path / "thesis"), city, field], "thesis.tex"),
-        ([city, city, field], "lie in one another"),
+        ([city, city, field], "is one of the parts; merge into a directory of its own"),
         ([f"{city}/shards/all", city, field], "lie in one another"),
         ([str(growing), city, field], "holds a dataset already"),
     ]
@@ -148,3 +157,15 @@ def test_a_damaged_part_is_found_while_it_is_copied(
     assert not (tmp_path / "copied" / "dataset.json").exists()
     assert main(["merge", str(tmp_path / "linked"), str(parts["city"]), str(field), "--jobs", "1"]) == 1
     assert "verify found" in capsys.readouterr().err
+
+
+def test_copies_that_do_not_fit_are_refused_before_anything_is_copied(
+    parts: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Links need no room; copies, and shards that get new names, do."""
+    device = type("Usage", (), {"free": 1000, "total": 10**9})
+    monkeypatch.setattr("scenegen_datasets.place.shutil.disk_usage", lambda _: device)
+    roots = [parts["city"], parts["field"]]
+    assert main(["merge", str(tmp_path / "copy"), *map(str, roots), "--copy"]) == 4
+    assert not any((tmp_path / "copy").iterdir())
+    merge(tmp_path / "linked", roots)

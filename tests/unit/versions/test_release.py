@@ -83,8 +83,8 @@ def test_releasing_again_writes_nothing_and_finishing_again_keeps_the_version(
 @pytest.mark.parametrize(
     ("version", "message"),
     [
-        ("1.0.0", "says too little"),
-        ("0.9.0", "says too little"),
+        ("1.0.0", "1.0.0 is not above 1.0.0, its last release; release it as"),
+        ("0.9.0", "0.9.0 is not above 1.0.0, its last release; release it as"),
         ("1.0.7", r"a MINOR step .2 clips are new.*; release it as 1\.1\.0 or above"),
         ("1.1", "is not MAJOR.MINOR.PATCH"),
         ("v1.1.0", "is not MAJOR.MINOR.PATCH"),
