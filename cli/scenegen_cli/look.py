@@ -14,6 +14,7 @@ from scenegen_cli.maps import Maps
 from scenegen_cli.render import ask
 from scenegen_datasets.census import count_classes, count_objects
 from scenegen_datasets.pictures.world_sheet import draw_world, in_numbers
+from scenegen_datasets.place import make_directory
 from scenegen_datasets.recipe import Recipe
 from scenegen_datasets.stage import raise_world
 from scenegen_datasets.world_file import ENDINGS, SIDECAR_MARK, parts_of, sidecar, world_file
@@ -70,10 +71,7 @@ def _check_out(path: Path | None, endings: Sequence[str], flag: str) -> None:
         raise InputError(f"{flag} {path}: name a file that ends in {', '.join(endings)}")
     if path.is_dir():
         raise InputError(f"{flag} {path}: is a directory; name a file")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{flag} {path}: {path.parent} cannot be made: {error.strerror}") from None
+    make_directory(path.parent, flag)
 
 
 def _draw(command: Maps, recipe: Recipe, map: str) -> World:

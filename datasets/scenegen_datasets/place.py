@@ -1,4 +1,4 @@
-"""Where something large is about to be written: is that a directory, and is there room?"""
+"""Where something large is about to be written: is that a directory, can it be made, and is there room?"""
 
 from __future__ import annotations
 
@@ -23,6 +23,28 @@ def existing_part(root: Path) -> Path:
     if not existing.is_dir():
         raise InputError(f"--out {root}: {existing} is a file; name a directory")
     return existing
+
+
+def make_directory(path: Path, flag: str = "--out") -> None:
+    """Make a directory that a user named, and what it lies in; one that is there stays as it is.
+
+    Parameters
+    ----------
+    path : Path
+    flag : str
+        How the user named it, for the message.
+
+    Raises
+    ------
+    InputError
+        If it is a file, or cannot be made.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise InputError(f"{flag} {path}: is a file; name a directory") from None
+    except OSError as error:
+        raise InputError(f"{flag} {path}: cannot be made: {error.strerror}; choose another {flag}") from None
 
 
 def check_room(root: Path, existing: Path, need_bytes: float, instead: str) -> None:

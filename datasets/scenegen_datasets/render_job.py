@@ -13,7 +13,7 @@ from typing import Any
 from scenegen.foundation.errors import InputError, ScenegenError
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import layers_by_member
-from scenegen_datasets.place import check_room, existing_part
+from scenegen_datasets.place import check_room, existing_part, make_directory
 from scenegen_datasets.plan import plan
 from scenegen_datasets.recipe import Recipe
 from scenegen_datasets.store import check_output, finished
@@ -117,9 +117,4 @@ def prepare(job: Job) -> None:
         raise InputError(
             f"--out {str(job.root)[:80]!r}: cannot be used: {reason}; choose another --out"
         ) from None
-    try:
-        job.root.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"--out {job.root}: cannot be made: {error.strerror}; choose another --out"
-        ) from None
+    make_directory(job.root)

@@ -23,6 +23,7 @@ from scenegen_datasets.layers import DEFAULT_LAYERS
 from scenegen_datasets.licence import KEY
 from scenegen_datasets.lock import SOURCE, VOLATILE_KEYS, fingerprint, fingerprint_id, make_lock
 from scenegen_datasets.pictures.preview import write_preview
+from scenegen_datasets.place import make_directory
 from scenegen_datasets.render_job import dataset_name
 from scenegen_datasets.run import WORKER_ENVIRONMENT
 from scenegen_datasets.sensing.camera import CameraKeys, NewCamera, new_camera
@@ -96,10 +97,7 @@ def sense_dataset(
     lock = _lock(old, chosen, seed, out)
     keys = CameraKeys(camera=chosen.camera, sensor=chosen.sensor)
     film = Film(source, out, keys, chosen.side, seed, lock["fingerprint_id"])
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"--out {out}: cannot be made: {error.strerror}; choose another --out") from None
+    make_directory(out)
     with DirectoryLock(out):
         create_or_open(out, _yaml(old, asked, seed), lock)
         clean(out)

@@ -39,7 +39,7 @@ def test_the_knobs_of_one_map_have_default_and_meaning(capsys: pytest.CaptureFix
         (["maps", "city", "--preview", "x.jpg"], "--preview x.jpg: name a file that ends in .png"),
         (["maps", "city", "--export", "x.blend"], "--export x.blend: name a file that ends in .glb, .gltf"),
         (["maps", "city", "--preview", "here.png"], "--preview here.png: is a directory"),
-        (["maps", "city", "--preview", "file/x.png"], "--preview file/x.png: file cannot be made"),
+        (["maps", "city", "--preview", "file/x.png"], "--preview file: is a file; name a directory"),
         (
             ["maps", "city", "--export", "x.glb", "--nodes", "clas"],
             "--nodes clas: unknown; perhaps you meant 'class'",

@@ -11,6 +11,7 @@ from typing import Any
 from scenegen.foundation.errors import InputError, NoSpaceError
 from scenegen.foundation.lock import DirectoryLock
 from scenegen.foundation.pool import Done, Failed, Note, Pool, Strike, Task
+from scenegen_datasets.place import make_directory
 from scenegen_datasets.run import WORKER_ENVIRONMENT, JobError
 from scenegen_datasets.run_log import RunLog, machine
 from scenegen_trainers.campaign.plan import Batch, batches
@@ -129,7 +130,8 @@ def run(campaign: Campaign, told: Told) -> dict[str, str]:
     NoSpaceError
         If the device is full.
     """
-    _make(campaign.root)
+    make_directory(campaign.root)
+    check_output(campaign.root)
     store = CampaignStore(campaign.root)
     with DirectoryLock(campaign.root):
         store.open(campaign.recipe, allow_mixed=campaign.allow_mixed)
@@ -246,15 +248,3 @@ def _stop_if_hopeless(event: Failed, flown: int) -> None:
         raise InputError(failure.message)
     if flown == 0:
         raise JobError(f"no flight can be flown: {failure.message}")
-
-
-def _make(root: Path) -> None:
-    try:
-        root.mkdir(parents=True, exist_ok=True)
-        check_output(root)
-    except FileExistsError:
-        raise InputError(f"--out {root}: is a file; name a directory") from None
-    except OSError as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"--out {root}: cannot be made: {error.strerror}; choose another --out") from None
