@@ -7,7 +7,7 @@ import time
 from types import TracebackType
 from typing import Any
 
-from scenegen_cli.console import note, span
+from scenegen_cli.console import note, size, span
 from scenegen_datasets.run import Progress
 
 PLAIN_EVERY_S = 15.0
@@ -77,6 +77,10 @@ class Meter:
     def exported(self, done: int, total: int) -> None:
         """Clips were exported."""
         self._show("exporting", done, total, f"clip {done}/{total}")
+
+    def pushed(self, done: int, total: int) -> None:
+        """Bytes were sent."""
+        self._show("pushing", done, total, f"{size(done)} of {size(total)}")
 
     def _show(self, doing: str, done: int, total: int, what: str) -> None:
         now = time.monotonic()

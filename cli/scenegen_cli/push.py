@@ -18,7 +18,8 @@ class Push:
     """Copy a finished dataset to a URL; run again to resume. A reader there never sees half of it as the whole.
 
     The URL is hf://datasets/USER/NAME (log in with 'hf auth login'), or anything fsspec can write: s3://BUCKET/NAME,
-    gs://BUCKET/NAME, file:///mnt/NAME.
+    gs://BUCKET/NAME, file:///mnt/NAME. Buckets must exist; end points and keys come from the environment
+    (AWS_ENDPOINT_URL, AWS_ACCESS_KEY_ID, GOOGLE_APPLICATION_CREDENTIALS, HF_TOKEN, ...).
     """
 
     dataset: Annotated[Path, tyro.conf.Positional]
@@ -39,9 +40,14 @@ def run(arguments: Sequence[str]) -> int:
         command = parse(Push, "push", arguments)
     except HelpShown:
         return 0
+    from scenegen_cli.progress import Meter
     from scenegen_datasets.push import push
 
-    done = push(command.dataset, command.url, private=command.private, quick=command.quick)
+    own_bars = command.url.startswith("hf://")  # of the Hub's client
+    with Meter(quiet=command.json or own_bars) as meter:
+        done = push(
+            command.dataset, command.url, private=command.private, quick=command.quick, told=meter.pushed
+        )
     if command.json:
         say_json(asdict(done))
         return 0

@@ -16,7 +16,7 @@ from scenegen.foundation import canonical
 from scenegen.foundation.errors import DatasetError, InputError
 from scenegen_datasets.description import read_description
 from scenegen_datasets.manifest import file_sha256, read_manifest
-from scenegen_datasets.push.target import Item, Target, target_at
+from scenegen_datasets.push.target import Item, Target, There, side_by_side, target_at
 from scenegen_datasets.store import DATASET, FOLDERS, LOCK, MANIFEST, read_lock
 
 __all__ = ["Pushed", "push"]
@@ -92,7 +92,7 @@ def push(
     _refuse_another(root, there)
     found = there.listing()
     size = sum(item.size for item in items)
-    missing = [item for item in items if not there.same(item, found.get(item.path), quick)]
+    missing = _missing(there, items, found, quick)
     alien = _alien(items, found)
     if missing or alien:
         there.remove([name for name in (DATASET, *alien) if name in found])
@@ -106,12 +106,17 @@ def push(
             done += sum(item.size for item in batch)
             if told:
                 told(done, size)
-        found = there.listing()
-        wrong = [item.path for item in missing if not there.same(item, found.get(item.path), quick)]
+        wrong = _missing(there, missing, there.listing(), quick)
         if wrong:
             there.remove([DATASET])
-            raise DatasetError(f"{url}: {wrong[0]} did not arrive as it was sent; push again")
+            raise DatasetError(f"{url}: {wrong[0].path} did not arrive as it was sent; push again")
     return Pushed(url, len(items), size, len(missing), sum(item.size for item in missing), len(alien))
+
+
+def _missing(there: Target, items: Sequence[Item], found: Mapping[str, There], quick: bool) -> list[Item]:
+    """Those that are not there, or not as they should be."""
+    same = side_by_side(there.lanes, lambda item: there.same(item, found.get(item.path), quick), items)
+    return [item for item, is_there in zip(items, same, strict=True) if not is_there]
 
 
 def _items(root: Path) -> list[Item]:
@@ -156,13 +161,16 @@ def _alien(items: Iterable[Item], found: Iterable[str]) -> list[str]:
 
 
 def _batches(items: Sequence[Item]) -> Iterable[list[Item]]:
-    """Pieces of work of bounded size; what makes the dataset whole comes in the last one, alone."""
+    """Pieces of work of bounded size; whose the place is comes first, what makes the dataset whole last, each alone."""
     batch: list[Item] = []
-    for item in (i for i in items if i.path not in _LAST):
-        batch.append(item)
-        if len(batch) >= _BATCH_FILES or sum(i.size for i in batch) >= _BATCH_BYTES:
+    for item in items:
+        alone = item.path in (LOCK, *_LAST)
+        if batch and (alone or len(batch) >= _BATCH_FILES or sum(i.size for i in batch) >= _BATCH_BYTES):
             yield batch
             batch = []
+        if alone:
+            yield [item]
+        else:
+            batch.append(item)
     if batch:
         yield batch
-    yield [i for i in items if i.path in _LAST]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,8 +33,18 @@ class HubTarget:
         self._repository, self._revision, self._api = repository, revision, api
 
     @classmethod
-    def at(cls, url: str, private: bool, api: Any = None) -> HubTarget:
+    def at(cls, url: str, private: bool, options: Mapping[str, Any], api: Any = None) -> HubTarget:
         """Find the repository of ``hf://datasets/USER/NAME[@BRANCH]``; it is made if it is not there.
+
+        Parameters
+        ----------
+        url : str
+        private : bool
+            Of a repository that is made.
+        options : mapping
+            Of ``HfApi``: ``token``, ``endpoint``; the same as those fsspec takes for reading.
+        api : huggingface_hub.HfApi, optional
+            Or what answers like it.
 
         Raises
         ------
@@ -51,9 +61,10 @@ class HubTarget:
                 raise InputError(
                     "the Hub needs huggingface_hub: pip install 'thermal-scenegen[hf]'"
                 ) from None
-            api = HfApi()
+            api = HfApi(**options)
         repository, revision = match[1], match[2]
-        tried(lambda: api.create_repo(repository, repo_type=_KIND, private=private, exist_ok=True), url)
+        hidden = True if private else None  # None leaves it to the rules of an organisation
+        tried(lambda: api.create_repo(repository, repo_type=_KIND, private=hidden, exist_ok=True), url)
         if revision is not None:
             tried(lambda: api.create_branch(repository, branch=revision, repo_type=_KIND, exist_ok=True), url)
         return cls(repository, revision, api)
@@ -62,6 +73,11 @@ class HubTarget:
     def where(self) -> str:
         """The URL."""
         return f"{HUB}{self._repository}" + (f"@{self._revision}" if self._revision else "")
+
+    @property
+    def lanes(self) -> int:
+        """One: a commit sends its files side by side already."""
+        return 1
 
     def listing(self) -> dict[str, There]:
         """All files with what the Hub knows of their content."""
@@ -110,7 +126,7 @@ class HubTarget:
 
         self._commit(
             [CommitOperationAdd(path_in_repo=item.path, path_or_fileobj=str(item.file)) for item in items],
-            f"Add {len(items)} files",
+            _told("Add", [item.path for item in items]),
         )
 
     def remove(self, paths: Sequence[str]) -> None:
@@ -118,7 +134,7 @@ class HubTarget:
         from huggingface_hub import CommitOperationDelete
 
         if paths:
-            self._commit([CommitOperationDelete(path) for path in paths], f"Remove {len(paths)} files")
+            self._commit([CommitOperationDelete(path) for path in paths], _told("Remove", paths))
 
     def _commit(self, operations: list[Any], message: str) -> None:
         tried(
@@ -131,6 +147,11 @@ class HubTarget:
             ),
             self.where,
         )
+
+
+def _told(deed: str, paths: Sequence[str]) -> str:
+    """Message of a commit."""
+    return f"{deed} {paths[0] if len(paths) == 1 else f'{len(paths)} files'}"
 
 
 def _git_sha1(item: Item) -> str:

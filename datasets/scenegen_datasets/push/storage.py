@@ -7,11 +7,13 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from scenegen.foundation.errors import DatasetError
-from scenegen_datasets.push.target import Item, There
+from scenegen.foundation.errors import DatasetError, InputError
+from scenegen_datasets.push.target import Item, There, side_by_side
 from scenegen_datasets.remote.web import connected, tried
 
 _CHUNK = 4 << 20
+_LANES = 8
+"""Files under way at once, where the file system allows it: most of a small file is waiting for the answer."""
 
 
 class StorageTarget:
@@ -27,11 +29,19 @@ class StorageTarget:
     def __init__(self, url: str, options: Mapping[str, Any]) -> None:
         self._url = url.rstrip("/")
         self._fs, self._root = connected(self._url, options)
+        self._has_buckets = hasattr(
+            self._fs, "split_path"
+        )  # of fsspec's, those tell the bucket from the rest
 
     @property
     def where(self) -> str:
         """The URL."""
         return self._url
+
+    @property
+    def lanes(self) -> int:
+        """Many where requests are asynchronous, as in object storage; others share one connection."""
+        return _LANES if getattr(self._fs, "async_impl", False) else 1
 
     def listing(self) -> dict[str, There]:
         """All files with their sizes."""
@@ -61,11 +71,25 @@ class StorageTarget:
         return quick or self._sha256(item.path) == item.sha256
 
     def send(self, root: Path, items: Sequence[Item]) -> None:
-        """Write file by file."""
-        for item in items:
-            place = self._place(item.path)
+        """Write the files.
+
+        Raises
+        ------
+        InputError
+            If there is no such bucket. A push never makes one: most likely the name is mistyped.
+        """
+        side_by_side(self.lanes, self._send, items)
+
+    def _send(self, item: Item) -> None:
+        place = self._place(item.path)
+        if not self._has_buckets:  # which hold no folders; asked for one, they would make the bucket
             self._fs.makedirs(place.rpartition("/")[0], exist_ok=True)
-            tried(lambda: self._fs.put_file(str(item.file), place), place)  # noqa: B023 - called at once
+        try:
+            tried(lambda: self._fs.put_file(str(item.file), place), place)
+        except FileNotFoundError as error:
+            raise InputError(
+                f"{self._url}: {error}; make the bucket first, or check its name and your access"
+            ) from None
 
     def remove(self, paths: Sequence[str]) -> None:
         """Remove file by file."""

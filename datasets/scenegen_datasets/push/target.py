@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol, TypeVar, runtime_checkable
 
 from scenegen.foundation.errors import InputError
 from scenegen_datasets.remote import is_url
 
 HUB = "hf://datasets/"
+
+Work = TypeVar("Work")
+Done = TypeVar("Done")
 
 
 @dataclass(frozen=True)
@@ -58,6 +62,11 @@ class Target(Protocol):
         """For messages."""
         ...
 
+    @property
+    def lanes(self) -> int:
+        """How many files may be under way at once."""
+        ...
+
     def listing(self) -> dict[str, There]:
         """All files, by path."""
         ...
@@ -71,12 +80,33 @@ class Target(Protocol):
         ...
 
     def send(self, root: Path, items: Sequence[Item]) -> None:
-        """Write files in this order, or all at once."""
+        """Write files, in any order."""
         ...
 
     def remove(self, paths: Sequence[str]) -> None:
         """Remove files, in this order or all at once; those that are not there are no error."""
         ...
+
+
+def side_by_side(lanes: int, work: Callable[[Work], Done], items: Iterable[Work]) -> list[Done]:
+    """Do work on items, so many at a time; the first error, or an interruption, calls off what has not begun.
+
+    Parameters
+    ----------
+    lanes : int
+        1 does one after the other, without a thread.
+    work : callable
+    items : iterable
+
+    Returns
+    -------
+    list
+        Results in the order of the items.
+    """
+    if lanes == 1:
+        return [work(item) for item in items]
+    with ThreadPoolExecutor(lanes) as pool:
+        return list(pool.map(work, items))
 
 
 def target_at(url: str, options: Mapping[str, Any], private: bool) -> Target:
@@ -91,10 +121,10 @@ def target_at(url: str, options: Mapping[str, Any], private: bool) -> Target:
         raise InputError(f"{url} is not a URL, such as s3://bucket/name, {HUB}USER/NAME or file:///mnt/name")
     if url.startswith(("http://", "https://")):
         raise InputError(f"{url} can only be read; push to storage: s3://, gs://, {HUB}USER/NAME, file://")
-    if url.startswith(HUB):
+    if url.startswith("hf://"):
         from scenegen_datasets.push.hub import HubTarget
 
-        return HubTarget.at(url, private)
+        return HubTarget.at(url, private, options)
     from scenegen_datasets.push.storage import StorageTarget
 
     return StorageTarget(url, options)

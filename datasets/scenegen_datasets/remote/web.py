@@ -156,6 +156,7 @@ class WebFiles:
 
     def _connect(self) -> None:
         self._fs, self._root = connected(self._url, self._options)
+        self._fs.invalidate_cache()  # of listings: a place may have been filled since this process looked at it
         self._process = os.getpid()
 
 
@@ -182,11 +183,17 @@ def tried(question: Callable[[], Value], where: str) -> Value:
 
 
 def unreachable(where: str, error: Exception) -> DatasetError:
-    """What an error of a file system means to a user."""
-    reason = " ".join(str(error).split())[:200] or type(error).__name__
+    """What an error of a file system means to a user; what an error came from often says more than the error."""
+    cause = error.__cause__
+    reasons = [_line(error), _line(cause)] if cause is not None else [_line(error)]
+    reason = ": ".join(dict.fromkeys(reasons))
     return DatasetError(
         f"{where}: cannot be reached: {reason}; try again later, or check the URL and your access"
     )
+
+
+def _line(error: BaseException) -> str:
+    return " ".join(str(error).split())[:200].rstrip(".") or type(error).__name__
 
 
 def connected(url: str, options: Mapping[str, Any]) -> tuple[Any, str]:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import shutil
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType, SimpleNamespace
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -18,7 +16,6 @@ from scenegen.foundation.errors import DatasetError, InputError
 from scenegen_cli.main import main
 from scenegen_datasets import PairDataset
 from scenegen_datasets.push import push
-from scenegen_datasets.push.hub import HubTarget
 from scenegen_datasets.push.storage import StorageTarget
 from scenegen_datasets.verify import verify
 
@@ -168,70 +165,3 @@ def test_places_that_hold_something_else_are_left_alone(
             push(pristine, url)
     with pytest.raises(InputError, match="not finished"):
         push(fakes.make(tmp_path / "growing", 1, done=False), "memory://x")
-
-
-@dataclass
-class Hub:
-    """What `HfApi` does with commits, in memory."""
-
-    files: dict[str, bytes]
-    commits: list[list[str]]
-    made: list[tuple[str, bool]]
-    folder: Path
-
-    def create_repo(self, name: str, *, repo_type: str, private: bool, exist_ok: bool) -> None:
-        assert repo_type == "dataset" and exist_ok
-        self.made.append((name, private))
-        self.files.setdefault(".gitattributes", b"*.tar filter=lfs\n")
-
-    def list_repo_tree(self, name: str, *, recursive: bool, revision: Any, repo_type: str) -> Any:
-        assert recursive
-        yield SimpleNamespace(path="shards", tree_id="0")
-        for path, data in self.files.items():
-            lfs = SimpleNamespace(sha256=hashlib.sha256(data).hexdigest()) if path.endswith(".tar") else None
-            blob = hashlib.sha1(b"blob %d\0" % len(data) + data).hexdigest()
-            yield SimpleNamespace(path=path, size=len(data), lfs=lfs, blob_id=blob)
-
-    def create_commit(self, name: str, operations: Any, **_: Any) -> None:
-        from huggingface_hub import CommitOperationAdd
-
-        names = []
-        for operation in operations:
-            added = isinstance(operation, CommitOperationAdd)
-            names.append(("" if added else "-") + operation.path_in_repo)
-            if added:
-                self.files[operation.path_in_repo] = Path(operation.path_or_fileobj).read_bytes()
-            else:
-                del self.files[operation.path_in_repo]
-        self.commits.append(names)
-
-    def hf_hub_download(self, name: str, path: str, **_: Any) -> str:
-        (self.folder / "download").write_bytes(self.files[path])
-        return str(self.folder / "download")
-
-
-def test_the_hub_gets_commits_the_last_of_which_makes_it_whole(
-    fakes: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    pytest.importorskip("huggingface_hub")
-    monkeypatch.setattr("scenegen_datasets.push._BATCH_FILES", 4)
-    hub = Hub({}, [], [], tmp_path)
-    url = "hf://datasets/somebody/night-city"
-
-    def pushed(root: Path) -> int:
-        return push(root, url, target=HubTarget.at(url, True, hub)).sent
-
-    root = fakes.make(tmp_path / "d", 2)
-    assert pushed(root) == len(files(root))
-    assert hub.made == [("somebody/night-city", True)]
-    assert hub.commits[-1] == ["MANIFEST.sha256", "dataset.json"]
-    assert all(len(commit) <= 4 for commit in hub.commits)
-    assert {k: v for k, v in hub.files.items() if k != ".gitattributes"} == files(root)
-    hub.commits.clear()
-    assert pushed(root) == 0 and not hub.commits
-    fakes.make(root, 3)
-    pushed(root)
-    assert hub.commits[0] == ["-dataset.json"] and hub.commits[-1] == ["MANIFEST.sha256", "dataset.json"]
-    assert not any("city-00000/000" in path for commit in hub.commits for path in commit)
-    with pytest.raises(InputError, match="USER/NAME"):
-        HubTarget.at("hf://datasets/alone", False, hub)
