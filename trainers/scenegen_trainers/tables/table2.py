@@ -47,9 +47,12 @@ _NOT_OURS = (
     "layers",
     "clips_per_world",
     "pairs_per_clip",
+    "first_world",
     "flight",
     "splits",
     "render",
+    "merged",
+    "sensed",
 )
 """Keys of a dataset's recipe that its flights do not take over."""
 
@@ -175,7 +178,8 @@ def flight_recipe(
     camera : mapping or None
         That of the checkpoints.
     data : Path or None
-        Dataset whose seed, climate, camera and sensor count, below `asked`: its test worlds are flown.
+        Dataset whose seed, climate, camera and sensor count, below `asked`: its test worlds are flown, in the hours and
+        weather it does not hold out unless `asked` says otherwise (`campaign.conditions`).
 
     Raises
     ------
@@ -186,7 +190,10 @@ def flight_recipe(
     if camera is not None:
         sources.append(Source("the checkpoints", {"camera": dict(camera)}))
     if data is not None:
-        kept = {key: value for key, value in read_lock(data)["recipe"].items() if key not in _NOT_OURS}
+        recipe_of_data = read_lock(data)["recipe"]
+        kept = {key: value for key, value in recipe_of_data.items() if key not in _NOT_OURS}
+        held = recipe_of_data.get("splits") or {}
+        kept["splits"] = {key: held[key] for key in ("test_hours", "test_weather") if held.get(key)}
         sources.append(Source(str(data / LOCK), kept))
     recipe = resolve_flights([*sources, *asked])
     for scene in recipe.dataset.scenes.values():
