@@ -111,8 +111,12 @@ def info(root: Path) -> DatasetInfo:
 
 
 def _growing(root: Path, lock: Mapping[str, Any], planned: int | None) -> DatasetInfo:
-    receipts = [read_receipt(root, path) for path in receipt_paths(root)]
-    jobs = [r.clip.job for r in receipts]
+    receipts = (
+        read_receipt(root, path) for path in receipt_paths(root)
+    )  # one at a time: their frames are many
+    made = [(r.clip, r.layers, r.size) for r in receipts]
+    clips, jobs = [clip for clip, *_ in made], [clip.job for clip, *_ in made]
+    first, layers, _ = made[0] if made else (None, (), 0)
     return DatasetInfo(
         name=lock["name"],
         version="",
@@ -124,14 +128,14 @@ def _growing(root: Path, lock: Mapping[str, Any], planned: int | None) -> Datase
         clips=len(jobs),
         worlds=len({(j.map, j.world) for j in jobs}),
         splits={s: sum(j.pairs for j in jobs if j.split == s) for s in SPLITS},
-        bytes=sum(r.size for r in receipts),
-        ranges=ranges_of(r.clip for r in receipts),
+        bytes=sum(size for *_, size in made),
+        ranges=ranges_of(clips),
         missing=(),
         pairs_planned=planned,
         maps=tuple(sorted({j.map for j in jobs})),
-        layers=receipts[0].layers if receipts else (),
-        grid_px=(receipts[0].clip.width_px, receipts[0].clip.height_px) if receipts else None,
-        band_um=receipts[0].clip.band_um if receipts else None,
+        layers=layers,
+        grid_px=None if first is None else (first.width_px, first.height_px),
+        band_um=None if first is None else first.band_um,
         **_of_lock(lock),
     )
 

@@ -14,7 +14,7 @@ from scenegen.foundation.lock import DirectoryLock
 from scenegen_datasets.finish import derive
 from scenegen_datasets.inside import sha256_inside
 from scenegen_datasets.job import ClipJob
-from scenegen_datasets.lock import fingerprint_id
+from scenegen_datasets.lock import SOURCE, fingerprint_id
 from scenegen_datasets.pictures.preview import FLIGHT, SHEET, write_preview
 from scenegen_datasets.receipt import read_receipt
 from scenegen_datasets.repair.heal import heal, recorded_sums, refuse_lost_history, rewrite_recipe
@@ -151,9 +151,15 @@ def _refuse_other_software(
     wanted = {found.made_by.get(clip.name, fingerprint_id(lock["fingerprint"])) for clip in found.broken}
     for name in sorted(wanted - {fingerprint_id(here)}):
         what = "; ".join(list(differing_keys(prints.get(name, {}), dict(here)))[:6])
+        made = "parts" in lock or SOURCE in lock
+        otherwise = (
+            "make it again from the datasets it was made of"
+            if made
+            else f"remove {found.broken[0].receipt} and its like, and run the same render command with --allow-mixed"
+        )
         raise InputError(
             f"{root}: the broken clips were rendered by other software ({what}); repair it where that is installed, or "
-            f"remove {found.broken[0].receipt} and its like, and run the same render command with --allow-mixed"
+            f"{otherwise}"
         )
 
 

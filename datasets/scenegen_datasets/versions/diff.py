@@ -125,8 +125,8 @@ def diff(old: Path, new: Path, pairs: int = 64) -> Difference:
 
 def _recipe_lines(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[str]:
     """Keys that differ; a merged dataset has those on which its parts agree, and their ids, which tell nothing."""
-    plain = [{key: value for key, value in recipe.items() if key != MERGED} for recipe in (old, new)]
-    for line in differing_keys(*plain):
+    before, after = ({key: value for key, value in recipe.items() if key != MERGED} for recipe in (old, new))
+    for line in differing_keys(before, after):
         if MERGED in new:
             line = re.sub(r" -> null$", f" -> {_BY_PART}", line)
         if MERGED in old:
