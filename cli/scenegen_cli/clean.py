@@ -34,7 +34,7 @@ def run(arguments: Sequence[str]) -> int:
         command = parse(Clean, "clean", arguments)
     except HelpShown:
         return 0
-    from scenegen_datasets.inside import printable
+    from scenegen.foundation.printable import printable
     from scenegen_datasets.repair.clean import clean
 
     found = clean(command.dataset, dry_run=True).strays

@@ -1,23 +1,26 @@
-"""What people read: results on standard output, everything else on standard error."""
+"""What people read: results on standard output, everything else on standard error.
+
+Datasets come from strangers, and so do the names in them: nothing reaches a terminal that could control it.
+"""
 
 from __future__ import annotations
 
 import json
 import sys
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, TextIO
+
+from scenegen.foundation.printable import printable_json, printable_lines
 
 
 def say(text: str) -> None:
     """Print a result."""
-    sys.stdout.write(f"{text}\n")
-    sys.stdout.flush()
+    _write(sys.stdout, printable_lines(text))
 
 
 def note(text: str) -> None:
     """Print something on the way."""
-    sys.stderr.write(f"{text}\n")
-    sys.stderr.flush()
+    _write(sys.stderr, printable_lines(text))
 
 
 def complain(text: str) -> None:
@@ -27,7 +30,7 @@ def complain(text: str) -> None:
 
 def say_json(value: Any) -> None:
     """Print a result for machines: one JSON document."""
-    say(json.dumps(value, indent=2, sort_keys=True, ensure_ascii=False))
+    _write(sys.stdout, printable_json(json.dumps(value, indent=2, sort_keys=True, ensure_ascii=False)))
 
 
 def table(rows: Iterable[Sequence[str]]) -> str:
@@ -55,3 +58,8 @@ def span(seconds: float) -> str:
         return f"{whole} s"
     hours, rest = divmod(whole, 3600)
     return f"{hours}:{rest // 60:02d}:{rest % 60:02d}" if hours else f"{rest // 60}:{rest % 60:02d}"
+
+
+def _write(stream: TextIO, text: str) -> None:
+    stream.write(f"{text}\n")
+    stream.flush()

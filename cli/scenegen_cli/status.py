@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import socket
 from collections.abc import Sequence
@@ -12,10 +11,13 @@ from typing import Annotated, Any
 
 import tyro
 
+from scenegen.foundation.canonical import parse as parse_json
+from scenegen.foundation.errors import DatasetError
 from scenegen_cli.console import say, say_json, table
 from scenegen_cli.parse import HelpShown, parse
 
 _TAIL_BYTES = 1 << 20
+_MOST_HOLDER_BYTES = 4096
 
 
 @dataclass(frozen=True)
@@ -81,38 +83,42 @@ def _facts(root: Path) -> dict[str, Any]:
 
 def _events(root: Path) -> list[dict[str, Any]]:
     """The run log's last events; a torn or foreign line is left out."""
+    from scenegen_datasets.inside import open_inside
     from scenegen_datasets.store import RUN_LOG
 
-    path = root / RUN_LOG
-    if not path.is_file():
+    try:
+        with os.fdopen(open_inside(root, RUN_LOG), "rb") as file:
+            file.seek(max(0, os.fstat(file.fileno()).st_size - _TAIL_BYTES))
+            lines = file.read(_TAIL_BYTES).split(b"\n")
+    except (DatasetError, OSError):
         return []
-    with path.open("rb") as file:
-        file.seek(max(0, path.stat().st_size - _TAIL_BYTES))
-        lines = file.read().decode("utf-8", "replace").splitlines()
-    events = []
-    for line in lines:
-        try:
-            event = json.loads(line)
-        except ValueError:
-            continue
-        if isinstance(event, dict) and {"time", "event"} <= event.keys():
-            events.append(event)
-    return events
+    return [event for line in lines if (event := _event(line)) is not None]
+
+
+def _event(line: bytes) -> dict[str, Any] | None:
+    try:
+        event = parse_json(line, "event")
+    except DatasetError:
+        return None
+    names = ("time", "event", *(("clip", "message") if b'"quarantine"' in line else ()))
+    sound = isinstance(event, dict) and all(isinstance(event.get(name), str) for name in names)
+    return event if sound else None
 
 
 def _writer(root: Path) -> str | None:
     """Who holds the directory's lock; a dead process of this host does not count."""
+    from scenegen_datasets.inside import read_inside
     from scenegen_datasets.store import WRITER_LOCK
 
     try:
-        holder = json.loads((root / WRITER_LOCK).read_bytes()[:4096])
+        holder = parse_json(read_inside(root, WRITER_LOCK, _MOST_HOLDER_BYTES), WRITER_LOCK)
         pid, host = int(holder["pid"]), str(holder["host"])
-    except (OSError, ValueError, KeyError, TypeError):
+    except (DatasetError, ValueError, KeyError, TypeError, OverflowError):
         return None
     if host == socket.gethostname():
         try:
             os.kill(pid, 0)
-        except ProcessLookupError:
+        except (ProcessLookupError, OverflowError):
             return None
         except PermissionError:
             pass

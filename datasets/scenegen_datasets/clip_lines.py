@@ -16,7 +16,9 @@ from scenegen_datasets.remote.disk import DiskFiles
 
 _CHUNK = 1 << 20
 _MAX_BYTES = 1 << 34
-_MAX_LINE_BYTES = 1 << 20
+_MIN_LINE_BYTES, _MAX_LINE_BYTES = 1 << 8, 1 << 20
+"""A file of line ends alone would cost eight times its size in memory."""
+
 _NEWLINE = 10
 
 
@@ -43,8 +45,12 @@ class ClipLines(Sequence[bytes]):
         DatasetError
             If it is missing, a link, or damaged.
         """
-        if path.is_symlink() or not path.is_file() or path.stat().st_size > clips * _MAX_LINE_BYTES:
-            raise DatasetError(f"{path}: missing, or far too large; run `scenegen verify`")
+        if path.is_symlink() or not path.is_file():
+            raise DatasetError(f"{path}: missing; run `scenegen verify`")
+        if not clips * _MIN_LINE_BYTES <= path.stat().st_size <= clips * _MAX_LINE_BYTES:
+            raise DatasetError(
+                f"{path}: damaged, its size is not that of {clips} clips; run `scenegen verify`"
+            )
         found, ends, size, count = hashlib.sha256(), [], 0, 0
         with path.open("rb") as file:
             while size <= _MAX_BYTES and (chunk := file.read(_CHUNK)):

@@ -75,7 +75,14 @@ DESCRIPTION: dict[str, Any] = {
     "grid": {"width_px": _SIDE, "height_px": _SIDE},
     "band_um": Numbers(2),
     "sensor": mapping,
-    "layers": [{"name": Text("|".join(LAYERS)), "member": _LINE}],
+    "layers": [
+        {
+            "name": Text("|".join(LAYERS)),
+            "member": _LINE,
+            "channels": [_LINE],
+            **dict.fromkeys(("dtype", "stored", "unit", "meaning"), _LINE),
+        }
+    ],
     "members": [_LINE],
     "counts": {**_SPLIT, "shard_bytes": _SIZE},
     "splits": {"train": _SPLIT, "val": _SPLIT, "test": _SPLIT},
@@ -83,6 +90,9 @@ DESCRIPTION: dict[str, Any] = {
     "ranges": Each(Numbers(2)),
     "missing": [_LINE],
     "sums": Each(_SHA256, ("clips.jsonl", "index.npy")),
+    "conventions": Each(_LINE),
+    "classes": [{"id": Whole(0, 255), "name": _LINE}],
+    "materials": [{"id": Whole(0, 65_535), "name": _LINE}],
 }
 """Body of ``dataset.json``."""
 

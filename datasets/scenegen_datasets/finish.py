@@ -149,8 +149,8 @@ def derive(root: Path, made: Sequence[ClipJob], missing: Sequence[str]) -> Datas
 def _preview_sums(root: Path) -> dict[str, str]:
     if not (root / PREVIEW).is_dir() or (root / PREVIEW).is_symlink():
         return {}
-    return {
-        e.path: sha256_inside(root, e.path)
-        for e in walk(root, PREVIEW)
-        if e.kind == "file" and listable(e.path)
-    }
+    files = [e.path for e in walk(root, PREVIEW) if e.kind == "file" and listable(e.path)]
+    alone = {
+        path.casefold(): path for path in reversed(files)
+    }  # of names that are one file elsewhere, the first
+    return {path: sha256_inside(root, path) for path in sorted(alone.values())}

@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import Literal
 
 from scenegen.foundation.errors import DatasetError
+from scenegen.foundation.printable import printable
 
 MAX_DEPTH = 8
 """Folders inside folders below a dataset; ours are four deep."""
@@ -72,7 +73,7 @@ def open_inside(root: Path, path: str) -> int:
             raise _refusal(path, error) from None
     if not stat.S_ISREG(os.fstat(descriptor).st_mode):
         os.close(descriptor)
-        raise DatasetError(f"{path}: missing (or not a plain file)")
+        raise DatasetError(f"{printable(path)}: missing (or not a plain file)")
     return descriptor
 
 
@@ -107,7 +108,7 @@ def read_inside(root: Path, path: str, max_bytes: int) -> bytes:
     """
     with os.fdopen(open_inside(root, path), "rb") as file:
         if os.fstat(file.fileno()).st_size > max_bytes:
-            raise DatasetError(f"{path}: larger than the {max_bytes} bytes a sound file can have")
+            raise DatasetError(f"{printable(path)}: larger than the {max_bytes} bytes a sound file can have")
         try:
             return file.read(max_bytes + 1)[:max_bytes]
         except OSError as error:
@@ -124,7 +125,7 @@ def sha256_inside(root: Path, path: str, max_bytes: int = 1 << 30) -> str:
     """
     with os.fdopen(open_inside(root, path), "rb") as file:
         if os.fstat(file.fileno()).st_size > max_bytes:
-            raise DatasetError(f"{path}: larger than the {max_bytes} bytes a sound file can have")
+            raise DatasetError(f"{printable(path)}: larger than the {max_bytes} bytes a sound file can have")
         try:
             return hashlib.file_digest(file, "sha256").hexdigest()
         except OSError as error:
@@ -151,13 +152,6 @@ def walk(root: Path, below: str = "") -> Iterator[Entry]:
             yield Entry(path, kind)
             if kind == "folder" and path.count("/") < MAX_DEPTH - 1:
                 waiting.append(path)
-
-
-def printable(path: str) -> str:
-    """A path as it can be shown: names that are not UTF-8, or hold control characters, are escaped."""
-    if path.isprintable():
-        return path
-    return "".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in path)
 
 
 def _kind(entry: os.DirEntry[str]) -> Kind:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from scenegen_datasets.inside import printable
+from scenegen.foundation.printable import printable
 
 
 @dataclass(frozen=True, order=True)

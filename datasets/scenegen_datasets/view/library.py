@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 
 from scenegen.foundation.errors import InputError
 from scenegen_datasets.index import checked, job_of
-from scenegen_datasets.job import SPLITS
 from scenegen_datasets.layers import IMU_MEMBER, layers_by_member
 from scenegen_datasets.pictures.words import clip_words
 from scenegen_datasets.reader import ShardReader
@@ -92,6 +91,8 @@ class Library:
     ------
     InputError
         If there is no dataset, or nothing in it yet.
+    DatasetError
+        If what describes it is damaged.
     """
 
     def __init__(self, root: Path) -> None:
@@ -104,17 +105,9 @@ class Library:
             if member != IMU_MEMBER
         }
         self._kept: OrderedDict[tuple[int, int], Still] = OrderedDict()
-        first = self._source.rows[self._source.starts]
+        jobs = (job_of(checked(row)) for row in self._source.heads)
         self.clips = tuple(
-            Clip(
-                k,
-                SPLITS[int(r["split"])],
-                r["map"].decode(),
-                int(r["world"]),
-                int(r["clip"]),
-                int(r["frames"]),
-            )
-            for k, r in enumerate(first)
+            Clip(k, job.split, job.map, job.world, job.clip, job.frames) for k, job in enumerate(jobs)
         )
         if not self.clips:
             raise InputError(f"{root} holds no pair yet; let a render finish its first clip")

@@ -64,8 +64,8 @@ def parse(data: bytes, where: str, *, max_bytes: int = MAX_JSON_BYTES) -> Any:
     Raises
     ------
     DatasetError
-        If it is too long, too deeply nested, not UTF-8, not JSON, or holds NaN, infinity (``1e999`` is one) or half a
-        surrogate pair, which nothing could write again.
+        If it is too long, too deeply nested, not UTF-8, not JSON, or holds a name twice, which readers understand
+        differently, NaN, infinity (``1e999`` is one) or half a surrogate pair, which nothing could write again.
     """
     if len(data) > max_bytes:
         raise DatasetError(
@@ -75,7 +75,9 @@ def parse(data: bytes, where: str, *, max_bytes: int = MAX_JSON_BYTES) -> Any:
         raise DatasetError(f"{where}: more than the {MAX_VALUES} values a sound file can have")
     try:
         text = data.decode()
-        value = json.loads(text, parse_constant=_refuse_constant, parse_float=_finite)
+        value = json.loads(
+            text, parse_constant=_refuse_constant, parse_float=_finite, object_pairs_hook=_named_once
+        )
         if "\\u" in text:
             json.dumps(value, ensure_ascii=False).encode()
     except RecursionError:
@@ -98,6 +100,15 @@ def read(path: Path, *, max_bytes: int = MAX_JSON_BYTES) -> Any:
 
 def _refuse_constant(name: str) -> float:
     raise ValueError(f"{name} is not a number this project writes")
+
+
+def _named_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) != len(pairs):
+        last = {name: k for k, (name, _) in enumerate(pairs)}
+        twice = next(name for k, (name, _) in enumerate(pairs) if last[name] != k)
+        raise ValueError(f"the name {twice[:60]!a} stands there twice")
+    return found
 
 
 def _finite(text: str) -> float:

@@ -57,6 +57,8 @@ def test_what_is_not_plain_data_is_refused(value: Any) -> None:
     [
         b"",
         b"{",
+        b'{"a": 1, "a": 2}',
+        b'[{"b": {"c": 0, "\\u0063": 0}}]',
         b"nan",
         b"NaN",
         b"[Infinity]",
