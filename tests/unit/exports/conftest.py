@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import hashlib
-import importlib.util
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
+import fakes
 from scenegen.foundation.lock import DirectoryLock
 from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.commit import commit_clip
@@ -28,27 +26,13 @@ from scenegen_datasets.store import create_or_open
 Exporter = Callable[..., Outcome]
 
 
-def _fakes() -> ModuleType:
-    """The hand-made frames of the tests of files; by its path, since tests are no package."""
-    path = Path(__file__).parents[1] / "ondisk/fakes.py"
-    spec = importlib.util.spec_from_file_location("export_fakes", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-FAKES = _fakes()
-
-
 def meta(job: ClipJob, frame: int) -> FrameMeta:
     """A camera somewhere, turned anyhow: only then do swapped axes show."""
     rng = np.random.default_rng((job.ordinal, frame))
     pose = np.eye(4)
     pose[:3, :3] = Rotation.random(random_state=int(rng.integers(2**31))).as_matrix()
     pose[:3, 3] = rng.uniform(-300, 300, 3)
-    return replace(FAKES.meta(frame), world_from_camera=pose)
+    return replace(fakes.meta(frame), world_from_camera=pose)
 
 
 def record(job: ClipJob) -> ClipRecord:
@@ -60,22 +44,22 @@ def record(job: ClipJob) -> ClipRecord:
         "high_K": 423.0,
         "linear_in": "radiance",
     }
-    return replace(FAKES.record(job), sensor=sensor)
+    return replace(fakes.record(job), sensor=sensor)
 
 
 def make(root: Path, clips: int = 6, layers: tuple[str, ...] = DEFAULT_LAYERS) -> Path:
     """A finished dataset of clips with 3 pairs, two of each split."""
     root.mkdir()
-    plan = FAKES.jobs(clips)
+    plan = fakes.jobs(clips)
     with DirectoryLock(root):
-        create_or_open(root, "map: city\n", FAKES.lock(clips * FAKES.PAIRS))
+        create_or_open(root, "map: city\n", fakes.lock(clips * fakes.PAIRS))
         for job in plan:
             rng = np.random.default_rng(job.ordinal)
             frames = (
-                encode_frame(job.key(k), FAKES.frame(rng), FAKES.reading(rng), meta(job, k), layers)
+                encode_frame(job.key(k), fakes.frame(rng), fakes.reading(rng), meta(job, k), layers)
                 for k in range(job.frames)
             )
-            commit_clip(root, record(job), frames, fingerprint=FAKES.FINGERPRINT)
+            commit_clip(root, record(job), frames, fingerprint=fakes.FINGERPRINT)
         finish(root, plan)
     return root
 

@@ -140,7 +140,7 @@ def test_a_full_device_is_told_as_such(fakes: ModuleType, tmp_path: Path) -> Non
     code = f"""
 import resource, signal, sys
 from pathlib import Path
-sys.path.insert(0, {str(KILLED.parent)!r})
+sys.path.insert(0, {str(KILLED.parents[2])!r})
 import fakes
 from scenegen.foundation.errors import NoSpaceError
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)

@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
-import importlib.util
-import sys
 from collections.abc import Iterator
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 import pytest
 
+import fakes
 from scenegen.foundation.lock import DirectoryLock
 from scenegen_datasets.commit import commit_clip
 from scenegen_datasets.encode import EncodedFrame, encode_frame
@@ -30,19 +28,6 @@ CLIPS = 12
 LAYERS = (*DEFAULT_LAYERS, "flow_back", "covisible_back")
 
 
-def _fakes() -> ModuleType:
-    path = Path(__file__).parents[1] / "ondisk" / "fakes.py"
-    spec = importlib.util.spec_from_file_location("trainers_fakes", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-FAKES = _fakes()
-
-
 def depth_of(height_m: float) -> np.ndarray:
     """Ground below a horizon in the upper third, sky above it."""
     rows, columns = SHAPE
@@ -56,7 +41,7 @@ def encoded(job: ClipJob, layers: tuple[str, ...]) -> Iterator[EncodedFrame]:
     depth = depth_of(4.0 + 2.0 * (job.ordinal % 4))
     sky = np.isinf(depth)
     for k in range(job.frames):
-        frame = FAKES.frame(rng, SHAPE, extra=True)
+        frame = fakes.frame(rng, SHAPE, extra=True)
         warmth = np.where(sky, 0.0, np.exp(-np.where(sky, 0.0, depth) / 30.0))
         ids = np.where(sky, 0, 1 + (np.arange(SHAPE[1]) // 16))
         frame = dataclasses.replace(
@@ -71,24 +56,24 @@ def encoded(job: ClipJob, layers: tuple[str, ...]) -> Iterator[EncodedFrame]:
         )
         counts = 2000.0 + 9000.0 * warmth + rng.normal(0.0, 60.0, SHAPE)
         reading = Reading(counts.astype(np.uint16), saturated=0)
-        yield encode_frame(job.key(k), frame, reading, FAKES.meta(k), layers)
+        yield encode_frame(job.key(k), frame, reading, fakes.meta(k), layers)
 
 
 def make(root: Path, *, clips: int = CLIPS, layers: tuple[str, ...] = LAYERS) -> Path:
     root.mkdir(parents=True)
-    plan = FAKES.jobs(clips, PAIRS)
+    plan = fakes.jobs(clips, PAIRS)
     recipe: dict[str, Any] = {
         "pairs": clips * PAIRS,
         "map": "city",
         "camera": {"width_px": SHAPE[1]},
         "sensor": SensorKnobs().model_dump(mode="json"),
     }
-    lock = make_lock(recipe, name="toy", scene_semantics=1, render=FAKES.RENDER)
+    lock = make_lock(recipe, name="toy", scene_semantics=1, render=fakes.RENDER)
     with DirectoryLock(root):
         create_or_open(root, "map: city\n", lock)
         for job in plan:
-            record = FAKES.record(job, SHAPE)
-            commit_clip(root, record, encoded(job, layers), fingerprint=FAKES.FINGERPRINT)
+            record = fakes.record(job, SHAPE)
+            commit_clip(root, record, encoded(job, layers), fingerprint=fakes.FINGERPRINT)
         finish(root, plan)
     return root
 

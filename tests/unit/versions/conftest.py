@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.util
 import itertools
 import os
-import sys
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -14,28 +12,16 @@ from typing import Any
 
 import pytest
 
+import fakes as _fakes
 from scenegen.foundation.lock import DirectoryLock
 from scenegen_datasets.layers import DEFAULT_LAYERS
 from scenegen_datasets.lock import make_lock
 from scenegen_datasets.store import create_or_open
 
 
-def _load() -> ModuleType:
-    path = Path(__file__).parents[1] / "ondisk" / "fakes.py"
-    spec = importlib.util.spec_from_file_location("versions_fakes", path)
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-_FAKES = _load()
-
-
 @pytest.fixture(scope="session")
 def fakes() -> ModuleType:
-    return _FAKES
+    return _fakes
 
 
 class Killed(BaseException):
@@ -84,27 +70,27 @@ SENSOR = {"scale_K": [233.0, 423.0], "linear_in": "radiance", "netd_mk": 50.0}
 def _make_map(root: Path, map: str, clips: int = 6, **more: Any) -> Path:
     """A dataset of another map; `more` are recipe keys, `shape`, `layers`, and `change`, which alters a record."""
     change = more.pop("change", lambda record: record)
-    shape, layers = more.pop("shape", _FAKES.SHAPE), more.pop("layers", DEFAULT_LAYERS)
+    shape, layers = more.pop("shape", _fakes.SHAPE), more.pop("layers", DEFAULT_LAYERS)
     camera = {"width_px": shape[1], "band_um": [8.0, 14.0]}
     recipe = {
-        "pairs": clips * _FAKES.PAIRS,
+        "pairs": clips * _fakes.PAIRS,
         "map": [map],
         "seed": 0,
         "sensor": SENSOR,
         "camera": camera,
         **more,
     }
-    lock = make_lock(recipe, name=root.name, scene_semantics=3, render=_FAKES.RENDER)
-    plan = [replace(job, map=map) for job in _FAKES.jobs(clips)]
+    lock = make_lock(recipe, name=root.name, scene_semantics=3, render=_fakes.RENDER)
+    plan = [replace(job, map=map) for job in _fakes.jobs(clips)]
     root.mkdir(exist_ok=True)
     with DirectoryLock(root):
         create_or_open(root, f"map: {map}\n", lock)
         for job in plan:
-            frames = _FAKES.encoded(job, layers, shape)
-            record = _FAKES.record(job, shape)
+            frames = _fakes.encoded(job, layers, shape)
+            record = _fakes.record(job, shape)
             record = change(replace(record, weather={**record.weather, "cloud_fraction": 0.5}))
-            _FAKES.commit_clip(root, record, frames, fingerprint=_FAKES.FINGERPRINT)
-        _FAKES.finish(root, plan)
+            _fakes.commit_clip(root, record, frames, fingerprint=_fakes.FINGERPRINT)
+        _fakes.finish(root, plan)
     return root
 
 
