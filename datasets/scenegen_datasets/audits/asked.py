@@ -137,6 +137,14 @@ QUANTITIES: tuple[Quantity, ...] = (
 """In the order they are shown."""
 
 
+def evenly_drawn(quantity: Quantity, recipe: Mapping[str, Any]) -> bool:
+    """Whether a recipe promises even draws: what the test split keeps for itself is missing from the others."""
+    held = recipe.get("splits") or {}
+    uneven = {"hour"} if held.get("test_hours") else set()
+    uneven |= {"wind_mps", "cloud_fraction"} if held.get("test_weather") else set()
+    return quantity.even and quantity.name not in uneven
+
+
 def asked_range(quantity: Quantity, recipe: Mapping[str, Any]) -> tuple[Range | None, bool]:
     """What the recipe asks for, and whether it says so itself; None where a climatology decides.
 

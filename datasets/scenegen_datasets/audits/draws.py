@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float64
 
-from scenegen_datasets.audits.asked import QUANTITIES, Facts, Quantity, Range, asked_range
+from scenegen_datasets.audits.asked import QUANTITIES, Facts, Quantity, Range, asked_range, evenly_drawn
 from scenegen_datasets.audits.histogram import Histogram, even_edges
 from scenegen_datasets.audits.verdict import Verdict, skipped
 
 UNEVEN = 1e-3
 """Chance below which draws are called uneven: one in a thousand sound datasets and quantities is."""
 
+_SPLIT_SHARES = {"train": 0.8, "val": 0.1, "test": 0.1}  # of worlds, unless whole maps are held out
 _ROUNDING = 1e-9
 _FEWEST = 8
 _BINS = 24
@@ -131,7 +132,7 @@ def _draw(quantity: Quantity, values: Float64[np.ndarray, "draws"], recipe: Mapp
         )
         if asked[1] > asked[0]:
             covered = (min(high, asked[1]) - max(low, asked[0])) / (asked[1] - asked[0])
-            even = quantity.even and len(values) >= _FEWEST
+            even = evenly_drawn(quantity, recipe) and len(values) >= _FEWEST
             chance = evenness((values - asked[0]) / (asked[1] - asked[0])) if even else None
     return Draw(
         quantity.name,
@@ -177,7 +178,7 @@ def _tallies(found: Mapping[str, Counter[str]], recipe: Mapping[str, Any]) -> tu
     styles = [str(name) for name in recipe.get("flight", {}).get("styles", ())]
     asked = {
         "maps": {name: 1.0 / len(maps) for name in maps},
-        "splits": {"train": 0.8, "val": 0.1, "test": 0.1},
+        "splits": {} if (recipe.get("splits") or {}).get("test_maps") else _SPLIT_SHARES,
         "styles": {name: styles.count(name) / len(styles) for name in dict.fromkeys(styles)},
     }
     words = {"maps": "pairs per map", "splits": "pairs per split", "styles": "clips per style"}

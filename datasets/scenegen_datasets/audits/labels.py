@@ -143,7 +143,7 @@ class LabelAudit:
             steps=self._steps,
             **spreads,
             noise_mK=0.6745 * np.sqrt(2.0) * self._netd_mK,
-            flow_histogram=_histogram(values["flow_px"], log_edges(1e-6, 10.0, 56)),
+            flow_histogram=_histogram(values["flow_px"], log_edges(1e-8, 10.0, 54)),
             warped_histogram=_histogram(values["warped_mK"], heat),
             still_histogram=_histogram(values["still_mK"], heat),
         )

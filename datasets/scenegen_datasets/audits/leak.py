@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from jaxtyping import Float32, Int64
 
-from scenegen_datasets.audits.information import mutual_information
+from scenegen_datasets.audits.information import mutual_information, unrelated_information
 from scenegen_datasets.audits.regressors import Curve, Features, Plane, Regressor, Sum, Values
 from scenegen_datasets.audits.steps import Step
 from scenegen_datasets.audits.verdict import Verdict, skipped
@@ -62,11 +62,22 @@ class Explained:
 
 @dataclass(frozen=True)
 class Information:
-    """Mutual information with depth [bit]: of the grey level, of the row, and of the grey level in a known row."""
+    """Mutual information with depth [bit].
+
+    Attributes
+    ----------
+    grey, row, grey_given_row : float
+        Of the grey level, of the row, and of the grey level in a known row.
+    grey_unrelated, row_unrelated, grey_given_row_unrelated : float
+        The same with grey levels and rows of other pictures: what would be found where there is nothing.
+    """
 
     grey: float
     row: float
     grey_given_row: float
+    grey_unrelated: float
+    row_unrelated: float
+    grey_given_row_unrelated: float
 
 
 @dataclass(frozen=True)
@@ -158,19 +169,15 @@ class LeakAudit:
         x, y = np.concatenate(self._features), np.concatenate(self._answers)
         fold = _folds(names, [len(part) for part in self._answers])
         explained = Explained(**{name: _held_out_r2(fit, x, y, fold) for name, fit in _FITS.items()})
-        grey, row = x[:, _GREY], x[:, _ROW]
+        picture = np.repeat(np.arange(len(self._answers)), [len(part) for part in self._answers])
         return DepthLeak(
             _verdict(explained, held_out),
             samples,
             held_out,
             groups,
             explained,
-            Information(
-                mutual_information(grey, y),
-                mutual_information(row, y),
-                mutual_information(grey, y, given=row),
-            ),
-            _lookup(grey, y),
+            _information(x[:, _GREY], x[:, _ROW], y, picture),
+            _lookup(x[:, _GREY], y),
         )
 
 
@@ -184,6 +191,17 @@ def feature_maps(
     mean = np.asarray(cv2.blur(grey, size), np.float32)
     square = np.asarray(cv2.blur(grey * grey, size), np.float32)
     return counts, grey, mean, np.sqrt(np.maximum(square - mean * mean, 0.0)).astype(np.float32)
+
+
+def _information(grey: Values, row: Values, y: Values, picture: Int64[np.ndarray, "samples"]) -> Information:
+    return Information(
+        mutual_information(grey, y),
+        mutual_information(row, y),
+        mutual_information(grey, y, given=row),
+        unrelated_information(grey, y, picture),
+        unrelated_information(row, y, picture),
+        unrelated_information(grey, y, picture, given=row),
+    )
 
 
 def _folds(names: list[str], sizes: list[int]) -> Int64[np.ndarray, "samples"]:

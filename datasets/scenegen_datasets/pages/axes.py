@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from scenegen_datasets.pages.markup import text
 
@@ -13,6 +13,7 @@ SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 _LARGE_PX = 450  # what is wider gets larger letters on a narrow page
+_UP_PX = 14
 
 
 @dataclass(frozen=True)
@@ -77,7 +78,7 @@ def tick_words(value: float, log: bool = False) -> str:
         return f"10{str(round(math.log10(value))).translate(SUPERSCRIPT)}"
     if abs(value) >= 1e4:
         return f"{value:,.0f}"
-    return f"{round(value, 10):g}"
+    return f"{round(value, 10):g}".replace("-", "−")
 
 
 @dataclass(frozen=True)
@@ -131,6 +132,14 @@ class Frame:
             f"{text(tick_words(v, scale.log))}{text(unit)}</text>"
             for v in scale.ticks(about)
         )
+
+    def upright(self, words: str) -> str:
+        """Words of the axis on the left, level above it."""
+        return f'<text class="up" x="2" y="12">{text(words)}</text>' if words else ""
+
+    def under(self, words: str) -> Frame:
+        """The same frame with room for these words above."""
+        return replace(self, top=self.top + _UP_PX, height=self.height + _UP_PX) if words else self
 
     def svg(self, *parts: str, words: str) -> str:
         """The whole chart; `words` say what it shows to those who cannot see it."""

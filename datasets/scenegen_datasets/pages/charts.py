@@ -41,6 +41,8 @@ def histogram(
     log: bool = False,
     asked: tuple[float, float] | None = None,
     mark: tuple[float, str] | None = None,
+    ticks: Sequence[tuple[float, str]] = (),
+    up: str = "",
     frame: Frame = SMALL,
 ) -> Html:
     """Distributions over one axis, each scaled to its own total.
@@ -57,8 +59,13 @@ def histogram(
         A range to shade.
     mark : (float, str), optional
         A place to mark, and its words.
+    ticks : sequence of (float, str)
+        Of the axis below; round values by default.
+    up : str
+        What the shares on the left are shares of.
     frame : Frame
     """
+    frame = frame.under(up)
     low = min(s.edges[0] for s in series)
     high = max(s.edges[-1] for s in series)
     x = frame.across(low, high, log)
@@ -69,7 +76,23 @@ def histogram(
         parts.append(_outline(s, found, x, y) if len(series) > 1 else _bars(s, found, x, y))
     if mark:
         parts.append(_mark(x, y, *mark))
-    return Html(frame.svg(*parts, frame.foot(x, words), words=words))
+    foot = frame.marked_foot([(x(at), said) for at, said in ticks], words) if ticks else frame.foot(x, words)
+    return Html(frame.svg(frame.upright(up), *parts, foot, words=_described(series, words)))
+
+
+def _described(series: Sequence[Bars], words: str) -> str:
+    """The chart in a sentence: what its axis is, and where each distribution has its middle."""
+    middles = [f"{s.name} " * bool(s.name) + tick_words(_median(s)) for s in series if sum(s.counts)]
+    return f"distribution of {words}; median about {', '.join(middles)}" if middles else words
+
+
+def _median(bars: Bars) -> float:
+    half, so_far = sum(bars.counts) / 2.0, 0.0
+    for left, right, count in zip(bars.edges[:-1], bars.edges[1:], bars.counts, strict=True):
+        so_far += count
+        if so_far >= half:
+            return float(f"{(left + right) / 2.0:.3g}")
+    return bars.edges[-1]
 
 
 def _asked(x: Scale, y: Scale, asked: tuple[float, float]) -> str:
@@ -140,6 +163,7 @@ def curves(
     log_y: bool = False,
     unit: str = "",
     level: float | None = None,
+    up: str = "",
     frame: Frame = LARGE,
 ) -> Html:
     """Lines over two axes.
@@ -155,14 +179,18 @@ def curves(
         Behind the ticks on the left.
     level : float, optional
         A level line of its own.
+    up : str
+        Words of the axis on the left.
     frame : Frame
     """
+    frame = frame.under(up)
     x, y = frame.across(*x_range, log_x), frame.up(*y_range, log_y)
-    parts = [frame.side(y, unit), frame.foot(x, across)]
+    parts = [frame.upright(up), frame.side(y, unit), frame.foot(x, across)]
     if level is not None:
         parts.append(f'<path class="grid" style="stroke:var(--soft)" d="M{x.start} {y(level):.1f}H{x.end}"/>')
     parts += [_curve(line, x, y) for line in lines]
-    return Html(frame.svg(*parts, words=across))
+    names = ", ".join(line.name for line in lines if line.name)
+    return Html(frame.svg(*parts, words=f"{up or names} over {across}" if up or names else across))
 
 
 def _curve(line: Curve, x: Scale, y: Scale) -> str:
@@ -188,7 +216,7 @@ def share_bar(share: float, colour: str = SERIES[0], most: float = 1.0) -> Html:
     """A share as a bar on its track."""
     width = 300 * min(max(share / most, 0.0), 1.0)
     return Html(
-        '<svg viewBox="0 0 300 14" class="bar" preserveAspectRatio="none">'
+        '<svg viewBox="0 0 300 14" class="bar" preserveAspectRatio="none" aria-hidden="true">'
         '<rect width="300" height="14" fill="var(--bar)"/>'
         f'<rect width="{width:.1f}" height="14" fill="{colour}" opacity=".88"/></svg>'
     )
@@ -198,7 +226,7 @@ def interval_bar(share: float, low: float, high: float, colour: str = SERIES[0])
     """A share from 0 to 1 as a bar on its track, its interval as a line across the bar's end."""
     left, width = 300 * low, max(300 * (high - low), 0.5)
     return Html(
-        '<svg viewBox="0 0 300 14" class="bar" preserveAspectRatio="none">'
+        '<svg viewBox="0 0 300 14" class="bar" preserveAspectRatio="none" aria-hidden="true">'
         '<rect width="300" height="14" fill="var(--bar)"/>'
         f'<rect width="{300 * share:.1f}" height="14" fill="{colour}" opacity=".85"/>'
         f'<rect x="{left:.1f}" y="5.5" width="{width:.1f}" height="3" fill="var(--ink)" opacity=".75"/></svg>'

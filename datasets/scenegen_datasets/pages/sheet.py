@@ -8,8 +8,8 @@ SERIES = tuple(f"var(--series-{k})" for k in range(1, 7))
 GOOD, NOTE, BAD, FAINT, INK = (f"var(--{name})" for name in ("good", "note", "bad", "faint", "ink"))
 
 _DAY = (
-    "--ground:#f7f6f3;--card:#fff;--line:#e1dfd9;--hair:#edebe6;--ink:#1c2126;--soft:#4b545e;--faint:#717b86;"
-    "--link:#1f5fbf;--good:#1d8159;--note:#a86a00;--bad:#c02f2b;--violet:#7350bd;--bar:#eceae4;--span:#1f5fbf1f;"
+    "--ground:#f7f6f3;--card:#fff;--line:#e1dfd9;--hair:#edebe6;--ink:#1c2126;--soft:#4b545e;--faint:#66707b;"
+    "--link:#1f5fbf;--good:#1a7a53;--note:#966000;--bad:#c02f2b;--violet:#7350bd;--bar:#eceae4;--span:#1f5fbf1f;"
     "--series-1:#2a6fc9;--series-2:#d9742a;--series-3:#219071;--series-4:#8457c8;--series-5:#b63d6b;--series-6:#7d8794"
 )
 _NIGHT = (
@@ -32,9 +32,16 @@ h3{font-size:14px;font-weight:600;margin:0 0 8px;color:var(--soft)}
 p{margin:8px 0;max-width:78ch}
 p.lead{color:var(--faint);margin:8px 0 0;max-width:none}
 a{color:var(--link)}
+:focus-visible{outline:2px solid var(--link);outline-offset:2px}
+nav{position:sticky;top:0;z-index:1;background:var(--ground);border-bottom:1px solid var(--line);margin:22px 0 0;
+display:flex;gap:4px 20px;overflow-x:auto;padding:10px 0;font-size:13.5px;white-space:nowrap}
+nav a{color:var(--soft);text-decoration:none}
+nav a:hover{color:var(--link);text-decoration:underline}
+[id]{scroll-margin-top:58px}
 code,pre{font:12.5px/1.5 ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;overflow-wrap:anywhere}
 pre{background:var(--card);border:1px solid var(--line);border-radius:8px;padding:14px;overflow:auto}
 .small{color:var(--faint);font-size:12.5px}
+p.small{max-width:100ch}
 .scroll{overflow-x:auto;margin:12px 0}
 table{border-collapse:collapse;width:100%;font-variant-numeric:tabular-nums}
 th{font-weight:500;color:var(--faint);text-align:left;font-size:12.5px;padding:6px 16px 6px 0;vertical-align:bottom;
@@ -60,12 +67,17 @@ svg{display:block;width:100%}
 svg text{fill:var(--faint);font:11px system-ui,sans-serif}
 svg text.axis{fill:var(--soft);text-anchor:middle}
 svg .grid{stroke:var(--line);stroke-width:1;fill:none}
-svg .x{text-anchor:middle}svg .y{text-anchor:end}
+svg .x{text-anchor:middle}svg .y{text-anchor:end}svg text.up{fill:var(--soft)}
 svg .line{fill:none;stroke-width:2;stroke-linejoin:round}
 svg .band{opacity:.18}
 svg .whisker{stroke-width:1.2;opacity:.75}
 svg.bar{height:12px;min-width:120px;border-radius:3px}
 @media(max-width:640px){main{padding:24px 16px 60px}h1{font-size:24px}h2{margin-top:42px}
 td:first-child{min-width:8.5em}svg.large text{font-size:16px}}
+@page{margin:14mm}
+@media print{*{print-color-adjust:exact;-webkit-print-color-adjust:exact}body{font-size:12px}
+main{max-width:none;padding:0}nav{display:none}h2{margin-top:28px}h2,h3,.head,.said{break-after:avoid}
+.card,tr,svg,img{break-inside:avoid}.scroll{overflow:visible}}
 """
+    "@media print{:root{color-scheme:light;" + _DAY + "}}"
 )

@@ -9,10 +9,11 @@ from scenegen.classes import CLASSES
 from scenegen_datasets.audits.contents import Contents
 from scenegen_datasets.audits.draws import Draw, Draws, Tally
 from scenegen_datasets.pages.charts import histogram, key, share_bar
-from scenegen_datasets.pages.markup import Html, element, text
+from scenegen_datasets.pages.markup import Html, element, folded, text
 from scenegen_datasets.pages.sheet import SERIES
 from scenegen_datasets.pages.tables import Column, number, table
-from scenegen_datasets.report.words import bars, card, cards, note, said
+from scenegen_datasets.pictures.colour import SKY_COLOUR
+from scenegen_datasets.report.words import bars, card, cards, decimals, note, plain, said
 
 _SHOWN = {
     "depth_m": ("depth of surfaces", "m", True),
@@ -20,24 +21,42 @@ _SHOWN = {
     "contrast_K": ("contrast of a frame, 1 to 99 %", "K", True),
     "surface_contrast_K": ("contrast of its surfaces, without sky", "K", True),
     "flow_px": ("true flow", "px", True),
-    "sky_share": ("share of sky", "of the pixels", False),
+    "sky_share": ("share of sky in a frame", "", False),
 }
-_CLASSES_SHOWN = 16
+_SPACED = {"m": "\u00a0m", "K": "\u00a0K", "px": "\u00a0px"}
+_OF_PIXELS = ("depth_m", "flow_px")
+_CLASSES_SHOWN = 12
+
+_MONTHS_END = (0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334, 365)
+_TICKS = {
+    "hour": tuple((float(hour), str(hour)) for hour in range(0, 25, 6)),
+    "day_of_year": tuple(
+        ((a + b) / 2.0, month)
+        for a, b, month in zip(_MONTHS_END, _MONTHS_END[1:], "JFMAMJJASOND", strict=False)
+    ),
+    "latitude_deg": tuple(
+        (float(x), f"{abs(x)}°{'N' if x > 0 else 'S' if x else ''}") for x in range(-90, 91, 30)
+    ),
+}
+"""Where round numbers are not what people think in."""
+
+_UNITS = {"deg": "°", "d": ""}
+_SLOWER = "bends, orbits, approaches and landings are flown more slowly than the cruise speed asked for"
 
 
 def drawn(draws: Draws) -> Html:
     """Every quantity as a distribution over the range that was asked for, and the tallies."""
-    shaded = key([("var(--span)", "the range the recipe asks for")])
+    shaded = key([(SERIES[0], "share of the draws"), ("var(--span)", "the range the recipe asks for")])
     charts = [_draw(draw) for draw in draws.draws]
     counted = [card(tally.words, _tally(tally)) for tally in draws.tallies]
     rejected = note(
-        f"{draws.rejected:,} paths were drawn and thrown away because they came too close to something or did not fit."
+        f"{draws.rejected:,} more paths were drawn and put aside: they came too close to something, or did not fit."
     )
     return Html(said(draws.verdict) + shaded + cards(*charts) + cards(*counted) + rejected)
 
 
 def _draw(draw: Draw) -> Html:
-    unit = f" [{draw.unit}]" if draw.unit else ""
+    unit = f" [{_UNITS.get(draw.unit, draw.unit)}]" if _UNITS.get(draw.unit, draw.unit) else ""
     per = f"{draw.count:,} {draw.per}{'s' if draw.count != 1 else ''}"
     if draw.asked is None:
         asked = "left to the climate of place and season"
@@ -47,12 +66,35 @@ def _draw(draw: Draw) -> Html:
         least = draw.name == "clearance_m"
         asked = f"asked: {'at least ' if least else ''}{draw.asked[0]:g}"
     else:
-        asked = f"asked: {draw.asked[0]:g} to {draw.asked[1]:g}"
+        asked = f"asked: {draw.asked[0]:g} to {draw.asked[1]:g}".replace("-", "−")
     outside = element("b", f" · {draw.outside} outside", class_="bad") if draw.outside else ""
     shade = draw.asked if draw.explicit and draw.asked and draw.asked[0] < draw.asked[1] else None
-    chart = histogram([bars(draw.histogram)], f"{draw.words}{unit}", asked=shade)
-    foot = element("p", f"{per}: {draw.low:.3g} to {draw.high:.3g}, median {draw.median:.3g}", class_="small")
-    return card(draw.words, element("p", asked, outside, class_="small"), chart, foot)
+    chart = histogram(
+        [bars(draw.histogram)],
+        f"{draw.words}{unit}",
+        asked=shade,
+        ticks=_ticks(draw),
+        up=f"% of the {draw.per}s",
+    )
+    places = decimals(draw.high - draw.low)
+    low, median, high = (plain(value, places) for value in (draw.low, draw.median, draw.high))
+    words = (
+        f"{per}: {low} to {high}, median {median}" if low != high else f"{per}, all of them {draw.low:.3g}"
+    )
+    if draw.chance is not None:
+        words += f"; even: p = {draw.chance:.2f}"
+    if draw.name == "speed_mps" and draw.asked is not None and draw.low < draw.asked[0]:
+        words += f"; {_SLOWER}"
+    return card(
+        draw.words, element("p", asked, outside, class_="small"), chart, element("p", words, class_="small")
+    )
+
+
+def _ticks(draw: Draw) -> tuple[tuple[float, str], ...]:
+    """Ticks of its own, if three of them fit; else round numbers."""
+    low, high = draw.histogram.edges[0], draw.histogram.edges[-1]
+    inside = tuple((at, words) for at, words in _TICKS.get(draw.name, ()) if low <= at <= high)
+    return inside if len(inside) > 2 else ()
 
 
 def _tally(tally: Tally) -> Html:
@@ -82,9 +124,14 @@ def contents(found: Contents, recipe: Mapping[str, Any]) -> Html:
             continue
         spread = getattr(found, name)
         asked = tuple(height) if name == "height_m" and isinstance(height, list | tuple) else None
-        mark = (spread.median, f"median {spread.median:.3g}")
+        mark = (spread.median, f"median {spread.median:.3g}{_SPACED.get(unit, '')}")
         chart = histogram(
-            [bars(found.histograms[name])], f"{words} [{unit}]", log=log, asked=asked, mark=mark
+            [bars(found.histograms[name])],
+            f"{words} [{unit}]" if unit in _SPACED else words,
+            log=log,
+            asked=asked,
+            mark=mark,
+            up="% of the pixels" if name in _OF_PIXELS else "% of the frames",
         )
         charts.append(card(words, chart))
     return Html(said(found.verdict) + cards(*charts) + _classes(found))
@@ -93,7 +140,7 @@ def contents(found: Contents, recipe: Mapping[str, Any]) -> Html:
 def _classes(found: Contents) -> Html:
     if not found.classes:
         return Html("")
-    colours = {kind.name: kind.colour for kind in CLASSES}
+    colours = {kind.name: kind.colour if kind.id else SKY_COLOUR for kind in CLASSES}
     most = found.classes[0].pixels
     rows = [
         (
@@ -104,16 +151,19 @@ def _classes(found: Contents) -> Html:
         )
         for c in found.classes
     ]
-    columns = (Column("class", "name"), number("of pixels"), Column("", "wide"), number("of frames show it"))
+    columns = (Column("class", "name"), number("of pixels"), Column("", "wide"), number("in frames"))
+    half = (min(len(rows), _CLASSES_SHOWN) + 1) // 2
+    parts = [
+        card(words, table(columns, part))
+        for words, part in (
+            ("Commonest classes", rows[:half]),
+            ("The next", rows[half:_CLASSES_SHOWN]),
+        )
+        if part
+    ]
     rest = rows[_CLASSES_SHOWN:]
-    more = (
-        element("details", element("summary", f"{len(rest)} rarer classes"), table(columns, rest))
-        if rest
-        else ""
-    )
-    return Html(
-        element("h3", "Classes", style="margin-top:26px") + table(columns, rows[:_CLASSES_SHOWN]) + text(more)
-    )
+    more = folded(f"{len(rest)} rarer classes", table(columns, rest)) if rest else ""
+    return Html(cards(*parts, least_px=420) + text(more))
 
 
 def _percent(share: float) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import io
 from collections.abc import Sequence
 
@@ -14,7 +15,17 @@ from scenegen_datasets.pages.charts import key
 from scenegen_datasets.pages.markup import Html, element, join, picture, text
 from scenegen_datasets.pictures import colour
 from scenegen_datasets.pictures.shot import Shot
-from scenegen_datasets.report.media import FLIGHT_BYTES, common_range, flight_within, tiles
+from scenegen_datasets.report.media import (
+    FLIGHT_BYTES,
+    Film,
+    Ramp,
+    Tile,
+    common_range,
+    depth_ramp,
+    flight_within,
+    thermal_ramp,
+    tiles,
+)
 from scenegen_datasets.report.selection import Selection
 
 SHEET = """
@@ -24,11 +35,19 @@ SHEET = """
 .tiles{display:grid;grid-template-columns:repeat(var(--layers),minmax(0,1fr));gap:8px}
 .tiles img{width:100%}
 .tiles .small,.flight .small{display:block;margin-top:4px;font-size:12px}
+.ramp{display:flex;align-items:center;gap:6px;margin:4px 8px 0 0;font-size:12px;color:var(--faint);white-space:nowrap;
+font-variant-numeric:tabular-nums}
+.ramp i{flex:1;min-width:12px;height:7px;border-radius:2px;box-shadow:inset 0 0 0 1px var(--line)}
+.flight .under{display:grid;grid-template-columns:repeat(var(--layers),minmax(0,1fr));gap:2px 8px;margin-top:6px}
+.flight img{width:100%}
 .scales{display:flex;flex-wrap:wrap;gap:10px 34px;align-items:center;margin:14px 0 4px}
 .scales>div{min-width:min(330px,100%)}
 .scales .wheel{display:flex;gap:10px;align-items:center;min-width:0}
 .scales .wheel img{width:44px;height:44px;border-radius:50%}
-@media(max-width:760px){.tiles{grid-template-columns:repeat(2,minmax(0,1fr))}}
+@media(max-width:760px){.tiles{grid-template-columns:repeat(6,minmax(0,1fr))}.tiles>div{grid-column:span 3}
+.tiles.five>div:nth-child(n+3){grid-column:span 2}}
+@media(max-width:520px){.flight .ramp,.tiles.five .small{font-size:10.5px}.ramp{gap:3px}}
+@media print{.moment,.flight{break-inside:avoid}}
 """
 
 _WHEEL_PX = 88
@@ -45,30 +64,63 @@ def flights(selection: Selection) -> Html:
     share = FLIGHT_BYTES // max(len(selection.flights), 1)
     cards = []
     for shots in selection.flights:
-        data = flight_within(shots, share)
-        with Image.open(io.BytesIO(data)) as image:
-            width, height = image.size
-        clip = shots[0].name.rpartition("-")[0]
-        moving = picture(data, "webp", f"flight {clip}: thermal, depth, flow", width, height, loading="lazy")
-        cards.append(element("div", _head(clip, shots[0]), moving, class_="card flight"))
+        film, clip = flight_within(shots, share), shots[0].name.rpartition("-")[0]
+        parts = _head(clip, shots[0]), _moving(film, clip), _under(film)
+        cards.append(element("div", *parts, class_="card flight"))
     return element("div", *cards, class_="cards", style="--least:520px")
 
 
+def _moving(film: Film, clip: str) -> Html:
+    """The film; its first frame on paper, and for those who asked their system for less motion."""
+    still = base64.b64encode(film.still).decode("ascii")
+    words = f"flight {clip}: {', '.join(film.layers)} side by side"
+    return Html(
+        '<picture><source media="(prefers-reduced-motion:reduce),print" '
+        f'srcset="data:image/webp;base64,{still}">'
+        + picture(film.data, "webp", words, film.width, film.height, loading="lazy")
+        + "</picture>"
+    )
+
+
+def _under(film: Film) -> Html:
+    """What the colours of a film mean, layer by layer."""
+    scales = film.scales
+    said = {
+        "thermal": _ramp(thermal_ramp(scales.tone)),
+        "depth": _ramp(depth_ramp(scales.span_m)),
+        "flow": element("span", f"flow, full colour {scales.full_px:g}\u00a0px", class_="small"),
+    }
+    cells = [element("div", said[layer]) for layer in film.layers]
+    return element("div", *cells, class_="under", style=f"--layers:{len(cells)}")
+
+
+def _ramp(ramp: Ramp) -> Html:
+    """A bar of colours between its two ends."""
+    colours = ",".join(_css(rgb) for rgb in ramp.colours)
+    bar = element("i", style=f"background:linear-gradient(90deg,{colours})")
+    return element("div", ramp.low, bar, ramp.high, class_="ramp")
+
+
+def _tile(tile: Tile, shot: Shot) -> Html:
+    shown = picture(
+        tile.data, "webp", f"{tile.layer} of {shot.name}", tile.width, tile.height, loading="lazy"
+    )
+    return element(
+        "div", shown, _ramp(tile.ramp) if tile.ramp else element("span", tile.words, class_="small")
+    )
+
+
 def _moment(shot: Shot, span_m: tuple[float, float]) -> Html:
-    cells = [
-        element(
-            "div",
-            picture(t.data, "webp", f"{t.layer} of {shot.name}", t.width, t.height, loading="lazy"),
-            element("span", t.words, class_="small"),
-        )
-        for t in tiles(shot, span_m)
-    ]
-    grid = element("div", *cells, class_="tiles", style=f"--layers:{len(cells)}")
+    cells = [_tile(tile, shot) for tile in tiles(shot, span_m)]
+    kind = "tiles five" if len(cells) == 5 else "tiles"
+    grid = element("div", *cells, class_=kind, style=f"--layers:{len(cells)}")
     return element("div", _head(shot.name, shot), grid, class_="moment")
 
 
 def _head(name: str, shot: Shot) -> Html:
-    return element("p", element("b", name), " · ".join(shot.facts.split("   ")), class_="head")
+    return element(
+        "p", element("b", name), " · ".join(shot.facts.replace("-", "−").split("   ")), class_="head"
+    )
 
 
 def _legend(shots: Sequence[Shot], span_m: tuple[float, float]) -> Html:
@@ -83,7 +135,13 @@ def _legend(shots: Sequence[Shot], span_m: tuple[float, float]) -> Html:
     classes = [
         (_css(CLASSES[k].colour if k else colour.SKY_COLOUR), CLASSES[k].name.replace("_", " ")) for k in seen
     ]
-    return join([element("div", *parts, class_="scales"), key(classes) if classes else ""])
+    how = element(
+        "p",
+        "Thermal under the gain of a camera (plateau equalisation), frame by frame: the bar below each picture is its "
+        "scale. Depth has one scale for all.",
+        class_="small",
+    )
+    return join([how, element("div", *parts, class_="scales"), key(classes) if classes else ""])
 
 
 def _depth_bar(low_m: float, high_m: float) -> Html:

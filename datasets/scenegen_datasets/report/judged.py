@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from scenegen_datasets.audits.histogram import Histogram
-from scenegen_datasets.audits.labels import LabelConsistency
+from scenegen_datasets.audits.histogram import Histogram, Spread
+from scenegen_datasets.audits.labels import FLOW_BAR_PX, LabelConsistency
 from scenegen_datasets.audits.leak import DepthLeak
 from scenegen_datasets.pages.charts import LARGE, Curve, curves, histogram, key, share_bar
-from scenegen_datasets.pages.markup import Html, element, folded
+from scenegen_datasets.pages.markup import Html, folded
 from scenegen_datasets.pages.sheet import SERIES
 from scenegen_datasets.pages.tables import Column, number, table
-from scenegen_datasets.report.words import bars, card, cards, figures, note, said
+from scenegen_datasets.report.words import bars, card, cards, figures, note, plain, said
 
 _REGRESSORS = (
     ("one_pixel", "counts of the pixel, any curve"),
@@ -27,22 +27,21 @@ def leak(found: DepthLeak) -> Html:
     rows = []
     for name, what in _REGRESSORS:
         score = getattr(found.explained, name)
-        rows.append(
-            (what, f"{score:.2f}", share_bar(score, SERIES[5] if name.startswith("row") else SERIES[0]))
-        )
+        colour = SERIES[5] if name.startswith("row") else SERIES[0]
+        rows.append((what, plain(score, 2), share_bar(score, colour)))
     guesses = table((Column("guess from"), number("R²"), Column("", "wide")), rows)
     curve, told = found.lookup, found.information
     line = Curve("depth by grey level", curve.grey, curve.mean_m, SERIES[0], curve.low_m, curve.high_m)
     span = (min(curve.low_m) * 0.8, max(curve.high_m) * 1.25)
     chart = curves(
-        [line], "grey level in its frame, 0 black, 1 white", (0.0, 1.0), span, log_y=True, unit=" m"
+        [line], "grey level in its frame, 0 black, 1 white", (0.0, 1.0), span, log_y=True, up="depth [m]"
     )
     information = table(
-        (Column("knowing"), number("tells of depth")),
+        (Column("knowing"), number("tells of depth"), number("of another picture")),
         [
-            ("grey level", f"{told.grey:.2f} bit"),
-            ("row", f"{told.row:.2f} bit"),
-            ("grey level, the row being known", f"{told.grey_given_row:.2f} bit"),
+            ("grey level", _bit(told.grey), _bit(told.grey_unrelated)),
+            ("row", _bit(told.row), _bit(told.row_unrelated)),
+            ("grey level in a known row", _bit(told.grey_given_row), _bit(told.grey_given_row_unrelated)),
         ],
     )
     kept = f"{found.groups} {found.held_out}, each judged by fits that never saw it"
@@ -50,17 +49,23 @@ def leak(found: DepthLeak) -> Html:
         f"{found.samples:,} pixels of {kept}. R² is the share of the scatter of log depth that is explained: 1 is a "
         "look-up table, 0 no better than one depth for all, below 0 worse. The line is the mean over all worlds, the "
         "band holds 68 % of the depths: a steep line with a thin band would be a leak. Of information, 5 bit would be "
-        "everything; it is measured within the same worlds, so it counts as well what holds in one world only."
+        "everything; it is measured within the same worlds, so it counts as well what holds in one world only. What "
+        "grey levels and rows of another picture seem to tell is chance: only what exceeds it says anything."
     )
     return Html(
         said(found.verdict)
         + cards(
-            card("What simple guesses explain", guesses, element("h3", "Mutual information"), information),
-            card("Depth by grey level", chart),
-            least_px=460,
+            card("What simple guesses explain", guesses),
+            card("Mutual information with depth", information),
+            card("Depth by grey level", key([(SERIES[0], "mean, and 68 % of the pixels")]), chart),
+            least_px=365,
         )
         + how
     )
+
+
+def _bit(value: float) -> str:
+    return f"{value:.2f}\u00a0bit"
 
 
 def labels(found: LabelConsistency) -> Html:
@@ -70,15 +75,21 @@ def labels(found: LabelConsistency) -> Html:
     rows = [
         ("flow by depth and poses, what stands still", *figures(found.flow_px, unit=" px")),
         ("flow by poses, sky", *figures(found.sky_px, unit=" px")),
-        ("depth by depth and poses, relative", *figures(found.depth_share)),
+        ("depth by depth and poses", *_percents(found.depth_share)),
         ("flow forth and back", *figures(found.cycle_px, unit=" px")),
         ("brightness read where the flow points", *figures(found.warped_mK, unit=" mK")),
         ("the same, free of noise", *figures(found.clean_mK, unit=" mK")),
         ("brightness at the same pixel", *figures(found.still_mK, unit=" mK")),
+        ("what the camera's noise alone would make", f"{found.noise_mK:.3g}\u00a0mK", "–", "–", "–"),
     ]
     columns = (Column("difference"), number("median"), number("95 %"), number("99 %"), number("pixels"))
     flow = histogram(
-        [bars(found.flow_histogram)], "stored flow against depth and poses [px]", log=True, frame=LARGE
+        [bars(found.flow_histogram)],
+        "stored flow against depth and poses [px]",
+        log=True,
+        mark=(FLOW_BAR_PX, f"a fault beyond {FLOW_BAR_PX:g}\u00a0px"),
+        up="% of the pixels",
+        frame=LARGE,
     )
     heat = curves(
         [_below(found.still_histogram, SERIES[1]), _below(found.warped_histogram, SERIES[0])],
@@ -86,7 +97,7 @@ def labels(found: LabelConsistency) -> Html:
         (found.still_histogram.edges[0], found.still_histogram.edges[-1]),
         (0.0, 100.0),
         log_x=True,
-        unit=" %",
+        up="% of the pixels",
     )
     words = key([(SERIES[0], "read where the flow points"), (SERIES[1], "read at the same pixel")])
     how = folded(
@@ -101,10 +112,18 @@ def labels(found: LabelConsistency) -> Html:
         said(found.verdict)
         + table(columns, [row for row in rows if row[4] != "0"])
         + cards(
-            card("Geometry", flow), card("Brightness: pixels that differ by less", words, heat), least_px=420
+            card("Flow: how far off", key([(SERIES[0], "surfaces that stand still")]), flow),
+            card("Brightness: pixels that differ by less", words, heat),
+            least_px=420,
         )
         + how
     )
+
+
+def _percents(spread: Spread) -> tuple[str, str, str, str]:
+    shares = (spread.low, spread.median, spread.high, spread.top)
+    low, median, high, top = (None if share is None else 100.0 * share for share in shares)
+    return figures(Spread(low, median, high, top, spread.count), unit=" %")
 
 
 def _below(found: Histogram, colour: str) -> Curve:

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image
 
-from scenegen_datasets.pictures.animation import animate
-from scenegen_datasets.pictures.colour import Picture
+from scenegen_datasets.pictures.animation import Scales, animate, flight_frame, shown_layers
+from scenegen_datasets.pictures.colour import Picture, colormap
 from scenegen_datasets.pictures.scales import Tone, depth_range, flow_range, tile
 from scenegen_datasets.pictures.shot import Shot
 
@@ -20,34 +20,58 @@ FLIGHT_BYTES = 4_200_000
 _QUALITY = 82
 _IDS = ("semantic", "instance")
 _LEAST_FRAMES = 4
+_RAMP_STOPS = 12
+
+
+@dataclass(frozen=True)
+class Ramp:
+    """A bar of colours and what its two ends stand for."""
+
+    low: str
+    high: str
+    colours: tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True, eq=False)
 class Tile:
-    """One layer of a moment: its picture as WebP, its size, and the words below it."""
+    """One layer of a moment: its picture as WebP, its size, the words below it, and the bar of its colours."""
 
     layer: str
     data: bytes
     width: int
     height: int
     words: str
+    ramp: Ramp | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Film:
+    """A flight as an animated WebP, its first frame for those who want no motion, and what its colours mean."""
+
+    data: bytes
+    still: bytes
+    width: int
+    height: int
+    layers: tuple[str, ...]
+    scales: Scales
 
 
 def tiles(shot: Shot, span_m: tuple[float, float]) -> tuple[Tile, ...]:
     """All layers of a moment; depths on a common scale, heat and flow on their own."""
     tone, full_px = Tone.of(shot), flow_range(shot)
     words = {
-        "thermal": f"thermal {tone.low_K:.1f} to {tone.high_K:.1f} K",
+        "thermal": "thermal",
         "depth": "depth",
         "semantic": "classes",
         "instance": "objects",
-        "flow": f"flow, full colour {full_px:g} px",
+        "flow": f"flow, full colour {full_px:g}\u00a0px",
     }
     found = []
     for layer in shot.columns:
         image = tile(shot, layer, tone, span_m, full_px)
         data = webp(image, exact=layer in _IDS)
-        found.append(Tile(layer, data, image.shape[1], image.shape[0], words[layer]))
+        ramp = thermal_ramp(tone) if layer == "thermal" else None
+        found.append(Tile(layer, data, image.shape[1], image.shape[0], words[layer], ramp))
     return tuple(found)
 
 
@@ -60,14 +84,33 @@ def webp(image: Picture, *, exact: bool = False) -> bytes:
     return file.getvalue()
 
 
-def flight_within(shots: Sequence[Shot], most_bytes: int) -> bytes:
+def thermal_ramp(tone: Tone) -> Ramp:
+    """Greys of a gain between its two temperatures, evenly in counts."""
+    greys = tone.ramp(_RAMP_STOPS).tolist()
+    return Ramp(
+        f"{tone.low_K:.1f}\u00a0K", f"{tone.high_K:.1f}\u00a0K", tuple((grey, grey, grey) for grey in greys)
+    )
+
+
+def depth_ramp(span_m: tuple[float, float]) -> Ramp:
+    """Colours of distances, near first; logarithmic."""
+    stops = np.linspace(255, 0, _RAMP_STOPS).round().astype(int)
+    colours = tuple(tuple(map(int, colormap()[stop])) for stop in stops)
+    return Ramp(f"{span_m[0]:g}\u00a0m", f"{span_m[1]:g}\u00a0m", colours)
+
+
+def flight_within(shots: Sequence[Shot], most_bytes: int) -> Film:
     """Animate a flight; the latter half is left out until what remains fits."""
     shown = list(shots)
     while True:
-        data = animate(shown)
+        data = animate(shown, words=False)
         if len(data) <= most_bytes or len(shown) <= _LEAST_FRAMES:
-            return data
+            break
         shown = shown[: max(len(shown) // 2, _LEAST_FRAMES)]
+    scales = Scales.of(shown)
+    first = flight_frame(shown[0], scales, words=False)
+    still = webp(np.asarray(first))
+    return Film(data, still, first.width, first.height, shown_layers(shown[0]), scales)
 
 
 def common_range(shots: Sequence[Shot]) -> tuple[float, float]:

@@ -18,6 +18,8 @@ from scenegen_datasets.store import read_lock
 REPORT = "preview/report.html"
 """Where it goes unless one says otherwise; nothing below ``preview`` belongs to the data."""
 
+_SECTIONS = ("moments", "flights", *QUESTIONS, "provenance", "cost")
+
 
 @dataclass(frozen=True)
 class Report:
@@ -77,6 +79,7 @@ def compose(root: Path, watch: Watch | None = None) -> tuple[str, Audits]:
     page = document(
         f"{found.name} {found.version}".strip(),
         _head(found, lock["recipe"], audits),
+        _contents(),
         words.section("moments", "Moments", gallery.moments(chosen)),
         words.section("flights", "Flights", gallery.flights(chosen)),
         *sections,
@@ -85,6 +88,15 @@ def compose(root: Path, watch: Watch | None = None) -> tuple[str, Audits]:
         sheet=words.SHEET + gallery.SHEET,
     )
     return page, audits
+
+
+def _contents() -> Html:
+    """Links to all sections; stays in sight."""
+    return element(
+        "nav",
+        *(element("a", name.capitalize(), href=f"#{name}") for name in _SECTIONS),
+        aria_label="sections",
+    )
 
 
 def _head(found: DatasetInfo, recipe: dict[str, object], audits: Audits) -> Html:
@@ -96,7 +108,7 @@ def _head(found: DatasetInfo, recipe: dict[str, object], audits: Audits) -> Html
     lead = (
         f"{found.pairs:,} pairs of thermal and depth ({splits}) in {found.clips:,} flights through {found.worlds:,} "
         f"worlds: {', '.join(map(str, maps))}. {camera['width_px']} × {camera['height_px']} px, "
-        f"{camera['hfov_deg']:g}°, {found.bytes / 1e9:.2f} GB."
+        f"{camera['hfov_deg']:g}° wide, {found.bytes / 1e9:.2f}\u00a0GB."
     )
     state = "" if found.complete else " It is not complete."
     judged_by = f"Audits look at {audits.steps:,} steps of {audits.clips:,} flights, always the same ones."

@@ -13,7 +13,7 @@ from scenegen_datasets.pages.charts import LARGE, Bars, Curve, curves, histogram
 from scenegen_datasets.pages.markup import Html, element
 from scenegen_datasets.pages.sheet import SERIES
 from scenegen_datasets.pages.tables import Column, number, table
-from scenegen_datasets.report.words import card, cards, note, said
+from scenegen_datasets.report.words import card, cards, note, plain, said
 
 
 def edges(found: EdgeMap) -> Html:
@@ -27,7 +27,11 @@ def edges(found: EdgeMap) -> Html:
         legend.append((SERIES[1], "noise-free radiance, mean over the pixel"))
     reach = -found.places_px[0]
     chart = curves(
-        lines, "pixels from the edge of depth; the near side is on the left", (-reach, reach), (-0.05, 1.05)
+        lines,
+        "pixels from the edge of depth; the near side is on the left",
+        (-reach, reach),
+        (-0.05, 1.05),
+        up="share of the near side's heat",
     )
     rows = [
         ("pixels that touch a silhouette", f"{100 * found.silhouette_share:.1f} %"),
@@ -114,7 +118,11 @@ def _orders(scores: dict[str, Sequence[FlowScore]] | object) -> Html:
         spread = Histogram.of(values, even_edges(-1.0, 1.0, 25))
         drawn.append(Bars(name, spread.edges, spread.counts, SERIES[k]))
     return histogram(
-        drawn, "Spearman's correlation of flow and 1/depth", mark=(0.0, "inverted below"), frame=LARGE
+        drawn,
+        "Spearman's correlation of the length of flow and 1/depth",
+        mark=(0.0, "inverted below"),
+        up="% of the frames",
+        frame=LARGE,
     )
 
 
@@ -134,7 +142,13 @@ def _errors(scores: dict[str, Sequence[FlowScore]] | object) -> Html:
         for k, (name, found) in enumerate(scores.items())
     ]
     return curves(
-        lines, "median length of the true flow [px]", across, up, log_x=True, log_y=True, unit=" px"
+        lines,
+        "median length of the true flow [px]",
+        across,
+        up,
+        log_x=True,
+        log_y=True,
+        up="median error [px]",
     )
 
 
@@ -144,8 +158,8 @@ def _decades(values: Sequence[float]) -> tuple[float, float]:
 
 
 def _px(value: float | None) -> str:
-    return "–" if value is None else f"{value:.2f} px"
+    return "–" if value is None else f"{plain(value, 2)}\u00a0px"
 
 
 def _two(value: float | None) -> str:
-    return "–" if value is None else f"{value:.2f}"
+    return "–" if value is None else plain(value, 2)

@@ -17,7 +17,7 @@ from scenegen_datasets.pictures.shot import Shot, shot_of
 from scenegen_datasets.scale import scale_of
 from scenegen_datasets.source import Source
 
-MOST_ROWS, MOST_FLIGHTS, MOST_FRAMES = 10, 6, 32
+MOST_ROWS, MOST_FLIGHTS, MOST_FRAMES = 12, 8, 32
 """Moments, animated flights and frames of each."""
 
 _SHOWN = ("thermal", "depth", "flow", "semantic", "instance")

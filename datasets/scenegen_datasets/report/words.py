@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+import re
+
 from scenegen_datasets.audits.histogram import Histogram, Spread
 from scenegen_datasets.audits.verdict import Verdict
 from scenegen_datasets.pages.axes import SUPERSCRIPT
@@ -23,7 +26,11 @@ text-decoration:none;color:var(--ink);font-size:14px;line-height:1.4}
 .said{display:flex;gap:12px;margin:12px 0 4px}
 .said p{margin:0}
 .said p+p{margin-top:4px;color:var(--soft)}
+.figures{display:flex;gap:10px 34px;flex-wrap:wrap;margin:12px 0 4px}
 """
+
+_UNITS = "%|px|mK|K|km|m|m/s|bit|s|GB|MB|MiB|h|°C"
+_BEFORE_UNIT = re.compile(rf"(?<=\d) (?=(?:{_UNITS})(?![\w/]))")
 
 
 def sign(verdict: Verdict) -> Html:
@@ -35,8 +42,13 @@ def sign(verdict: Verdict) -> Html:
 def said(verdict: Verdict) -> Html:
     """The verdict as it opens a section."""
     words = [element("p", element("b", verdict.headline))]
-    words += [element("p", verdict.words)] if verdict.words else []
+    words += [element("p", tied(verdict.words))] if verdict.words else []
     return element("div", sign(verdict), element("div", *words), class_="said")
+
+
+def tied(words: str) -> str:
+    """The same words; no line breaks between a number and its unit."""
+    return _BEFORE_UNIT.sub("\u00a0", words)
 
 
 def section(name: str, title: str, *content: object) -> Html:
@@ -67,8 +79,19 @@ def bars(found: Histogram, name: str = "", colour: str = SERIES[0]) -> Bars:
 def figures(spread: Spread, digits: int = 3, unit: str = "") -> tuple[str, str, str, str]:
     """Median, 95 %, 99 % and number of values as cells."""
     shown = [figure(value, digits) for value in (spread.median, spread.high, spread.top)]
-    median, high, top = (words + unit if words != "–" else words for words in shown)
+    median, high, top = (words + unit.replace(" ", "\u00a0") if words != "–" else words for words in shown)
     return median, high, top, f"{spread.count:,}"
+
+
+def decimals(span: float) -> int:
+    """How many decimals tell values apart that spread over `span`: about three digits of it."""
+    return max(0, 2 - math.floor(math.log10(span))) if span >= 1e-3 else 3
+
+
+def plain(value: float, places: int) -> str:
+    """A number with so many decimals, a true minus, and no minus before zero."""
+    words = f"{value:,.{places}f}"
+    return words.lstrip("-") if not words.strip("-0.,") else words.replace("-", "−")
 
 
 def figure(value: float | None, digits: int = 3) -> str:

@@ -83,6 +83,14 @@ def test_draws_that_crowd_are_noted() -> None:
     assert found.verdict.level == "note" and "hour" in found.verdict.words
 
 
+def test_what_the_test_split_keeps_for_itself_is_not_called_uneven() -> None:
+    held = RECIPE | {"splits": {"test_hours": [7.0, 18.0], "test_maps": ["field"]}}
+    found = audit_draws([clip(k, hour=6.0 + k / 40) for k in range(40)], held)
+    assert found.verdict.level == "fine" and draws(found)["hour"].chance is None
+    assert draws(found)["latitude_deg"].chance is not None
+    assert found.tallies[1].asked == {} and found.tallies[1].counts["train"] == 320
+
+
 def test_tallies_stand_beside_what_was_asked() -> None:
     maps, splits, styles = audit_draws((clip(k) for k in range(40)), RECIPE).tallies
     assert maps.counts == {"city": 160, "field": 160} and maps.asked == {"city": 0.5, "field": 0.5}

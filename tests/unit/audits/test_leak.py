@@ -7,7 +7,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from scenegen_datasets.audits.information import BINS, mutual_information
+from scenegen_datasets.audits.information import BINS, mutual_information, unrelated_information
 from scenegen_datasets.audits.leak import DepthLeak, LeakAudit
 from scenegen_datasets.audits.regressors import Curve, Plane, Sum
 
@@ -103,6 +103,32 @@ def test_information_of_closed_forms() -> None:
     assert mutual_information(z, y) == pytest.approx(-0.5 * np.log2(1.0 - r**2), abs=0.03)
     # y is z and noise: once z is known in bands, little of z is left to tell, the noise tells the rest
     assert mutual_information(noise, y, given=z) > mutual_information(noise, y) + 0.3
+
+
+def test_what_unrelated_pictures_seem_to_tell() -> None:
+    """Pictures that differ as a whole tell of each other by chance, and the fewer there are the more."""
+    rng = np.random.default_rng(4)
+    found = []
+    for pictures in (6, 600):
+        picture = np.repeat(np.arange(pictures), 60_000 // pictures)
+        warm, far = rng.normal(size=(2, pictures))[
+            :, picture
+        ]  # one draw a picture: nothing to do with each other
+        a, b = warm + 0.3 * rng.normal(size=picture.size), far + 0.3 * rng.normal(size=picture.size)
+        by_chance = unrelated_information(a, b, picture)
+        assert by_chance == pytest.approx(mutual_information(a, b), rel=0.35, abs=0.01)
+        found.append(by_chance)
+    assert found[0] > 0.3 > 0.05 > found[1]
+    a, noise, single = rng.normal(size=60_000), rng.normal(size=60_000), np.arange(60_000)
+    b = a + 0.1 * noise  # each sample a picture of its own: a plain shuffle
+    assert unrelated_information(a, b, single) < 2e-3 < 1.0 < mutual_information(a, b)
+
+
+def test_samples_of_a_picture_need_not_be_equally_many() -> None:
+    rng = np.random.default_rng(6)
+    picture = np.repeat(np.arange(40), rng.integers(1, 400, 40))
+    a = rng.normal(size=picture.size)
+    assert 0.0 <= unrelated_information(a, a, picture) < 0.2 < mutual_information(a, a)
 
 
 def test_regressors_find_what_they_can_express() -> None:

@@ -1,6 +1,7 @@
 """What a report shows stays within its budget and shows every map by night and by day."""
 
 import io
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from scenegen_datasets.pictures.shot import Shot
 from scenegen_datasets.report.media import flight_within, tiles, webp
 from scenegen_datasets.report.origin import cost, read_log
 from scenegen_datasets.report.selection import spread_out
+from scenegen_datasets.report.words import decimals, plain, tied
 
 
 def clip(map: str, sun_deg: float) -> dict[str, object]:
@@ -42,10 +44,30 @@ def frames(data: bytes) -> int:
 def test_a_flight_is_cut_until_it_fits() -> None:
     shots = [noise(k) for k in range(16)]
     whole = flight_within(shots, 10**9)
-    cut = flight_within(shots, len(whole) // 3)
-    assert (frames(whole), frames(cut)) == (16, 4)
-    assert len(cut) <= len(whole) // 3
-    assert frames(flight_within(shots, 1)) == 4  # something is always shown
+    cut = flight_within(shots, len(whole.data) // 3)
+    assert (frames(whole.data), frames(cut.data)) == (16, 4)
+    assert len(cut.data) <= len(whole.data) // 3
+    assert frames(flight_within(shots, 1).data) == 4  # something is always shown
+
+
+def test_a_flight_moves_and_its_still_is_where_it_starts() -> None:
+    film = flight_within([noise(k) for k in range(5)], 10**9)
+    assert film.layers == ("thermal", "depth")
+    with Image.open(io.BytesIO(film.data)) as moving, Image.open(io.BytesIO(film.still)) as still:
+        assert moving.size == still.size == (film.width, film.height)
+        shown = []
+        for k in range(5):
+            moving.seek(k)
+            shown.append(np.asarray(moving.convert("RGB"), np.int32))
+        first = np.asarray(still.convert("RGB"), np.int32)
+    assert all(np.abs(a - b).mean() > 5.0 for a, b in pairwise(shown))
+    assert np.abs(shown[0] - first).mean() < 3.0 < np.abs(shown[4] - first).mean()
+
+
+def test_numbers_are_written_as_people_write_them() -> None:
+    assert [decimals(span) for span in (300.0, 24.0, 9.0, 0.5, 0.0)] == [0, 1, 2, 3, 3]
+    assert (plain(-9.98, 1), plain(-0.001, 2), plain(1234.5, 0)) == ("−10.0", "0.00", "1,234")
+    assert tied("0.1 % of 5 km/h and 2 px") == "0.1\u00a0% of 5 km/h and 2\u00a0px"
 
 
 def test_pictures_of_ids_are_exact() -> None:
