@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import itertools
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from types import ModuleType
+from types import ModuleType, SimpleNamespace
 from typing import Any
 
 import pytest
 
 import fakes as _fakes
 from scenegen.foundation.lock import DirectoryLock
+from scenegen_datasets.clip import ClipRecord
+from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import DEFAULT_LAYERS
-from scenegen_datasets.lock import make_lock
+from scenegen_datasets.lock import fingerprint, make_lock
 from scenegen_datasets.store import create_or_open
 
 
@@ -87,11 +89,38 @@ def _make_map(root: Path, map: str, clips: int = 6, **more: Any) -> Path:
         create_or_open(root, f"map: {map}\n", lock)
         for job in plan:
             frames = _fakes.encoded(job, layers, shape)
-            record = _fakes.record(job, shape)
-            record = change(replace(record, weather={**record.weather, "cloud_fraction": 0.5}))
-            _fakes.commit_clip(root, record, frames, fingerprint=_fakes.FINGERPRINT)
+            _fakes.commit_clip(root, change(_record(job, shape)), frames, fingerprint=_fakes.FINGERPRINT)
         _fakes.finish(root, plan)
     return root
+
+
+def _record(job: ClipJob, shape: tuple[int, int] = _fakes.SHAPE) -> ClipRecord:
+    record = _fakes.record(job, shape)
+    return replace(record, weather={**record.weather, "cloud_fraction": 0.5})
+
+
+@pytest.fixture
+def studio(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Clips of these maps are made again without a renderer; gives the names of those that were."""
+    made: list[str] = []
+
+    def job_of(root: Path, entry: dict[str, Any], own: bool = True, into: Any = None, _: int = 1) -> Any:
+        (map,), clips = entry["recipe"]["map"], entry["recipe"]["pairs"] // _fakes.PAIRS
+        plan = tuple(replace(job, map=map) for job in _fakes.jobs(clips))
+        return SimpleNamespace(root=into or root, clips=plan)
+
+    def remake(job: Any, clips: Sequence[ClipJob], fingerprint: str, *_: Any) -> dict[str, str]:
+        for clip in clips:
+            _fakes.commit_clip(job.root, _record(clip), _fakes.encoded(clip), fingerprint=fingerprint)
+            made.append(clip.name)
+        return {}
+
+    monkeypatch.setattr("scenegen_datasets.repair.again.job_of", job_of)
+    monkeypatch.setattr("scenegen_datasets.repair.again.remake", remake)
+    monkeypatch.setattr(
+        "scenegen_datasets.repair.remake.fingerprint_here", lambda: fingerprint(_fakes.RENDER)
+    )
+    return made
 
 
 @pytest.fixture(scope="session")
