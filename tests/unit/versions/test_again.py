@@ -25,7 +25,6 @@ from scenegen_datasets.store import read_lock
 from scenegen_datasets.verify import verify
 from scenegen_datasets.versions.merge import merge
 
-
 PARTS = (("a", "city", 0), ("b", "field", 0), ("c", "city", 7))
 """Name, map and seed."""
 
