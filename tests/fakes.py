@@ -86,6 +86,12 @@ def encoded(
         yield encode_frame(job.key(k), frame(rng, shape, extra), reading(rng, shape), meta(k), layers)
 
 
+def truth(clip: int) -> list[tuple[Frame, Reading]]:
+    """Frames and readings of one clip, drawn again as `encoded` drew them."""
+    rng = np.random.default_rng(clip)
+    return [(frame(rng), reading(rng)) for _ in range(PAIRS + 1)]
+
+
 def record(job: ClipJob, shape: tuple[int, int] = SHAPE) -> ClipRecord:
     return ClipRecord(
         job=job,

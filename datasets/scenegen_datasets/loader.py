@@ -6,11 +6,10 @@ Every byte is checked against its CRC-32 before it is decoded: damage raises `Co
 
 from __future__ import annotations
 
-import operator
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, SupportsIndex
+from typing import TYPE_CHECKING, Any, SupportsIndex, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,8 +18,10 @@ from scenegen.foundation.errors import CorruptFrameError, DatasetError, InputErr
 from scenegen_datasets.index import checked, job_of
 from scenegen_datasets.job import SPLITS, ClipJob
 from scenegen_datasets.layers import LAYERS, check_layers, layers_by_member
+from scenegen_datasets.part import Clips, Part, position
 from scenegen_datasets.reader import ShardReader
 from scenegen_datasets.remote import files_at, plain_root
+from scenegen_datasets.sample import Sample, facts_of, stacked
 from scenegen_datasets.source import Source, open_source
 
 if TYPE_CHECKING:
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
 
 PREVIOUS = "previous_thermal"
 """Pseudo-layer: the thermal frame before."""
-
-Sample = dict[str, Any]
 
 _FACTS_KEPT = 1024
 
@@ -44,7 +43,7 @@ class PairDataset:
     split : str or None
         ``train``, ``val``, ``test``; None for all.
     layers : sequence of str
-        Which layers are decoded (`scenegen_datasets.layers.LAYERS`), and ``previous_thermal``.
+        Which layers are decoded (`scenegen_datasets.layers.LAYERS`), and ``previous_thermal``; nothing else is read.
     seq_length : int
         Pairs per sample; 1 gives single pairs without a leading axis.
     frame_skip : int
@@ -62,6 +61,11 @@ class PairDataset:
     ----------
     root : Path or str
         The directory, or the URL.
+    split : str or None
+    layers : tuple of str
+        What a sample holds, in storage order.
+    retake : Retake or None
+        May be set to another between two samples.
 
     Raises
     ------
@@ -70,9 +74,13 @@ class PairDataset:
 
     Notes
     -----
-    A sample holds the layers asked for (``depth`` float32 (rows, columns) [m], ...), ``key``, ``map``, ``world``,
-    ``clip``, ``frame``, ``split``, ``time_s``, ``world_from_camera`` (4, 4), ``K`` (3, 3), and ``facts``: hour, season,
-    sun and weather of the clip. With ``seq_length`` n > 1, everything that belongs to a frame has a leading axis of n.
+    A sample holds the layers asked for, as (rows, columns) arrays: ``thermal`` and ``previous_thermal`` uint16 counts,
+    ``depth`` float32 [m] along the optical axis (z, not the length of the ray; sky is inf), ``flow`` float32
+    (rows, columns, 2) [px], ``temperature`` float32 [K], ``radiance`` float32 [W m^-2 sr^-1], ``semantic`` uint8,
+    ``instance`` uint32, ``material`` uint16, ``covisible`` bool; see docs/conventions.md. Besides, ``key``, ``map``,
+    ``world``, ``clip``, ``frame``, ``split``, ``time_s``, ``world_from_camera`` (4, 4), ``K`` (3, 3), and ``facts``:
+    hour, season, sun and weather of the clip. With ``seq_length`` n > 1, everything that belongs to a frame has a
+    leading axis of n.
     """
 
     def __init__(
@@ -98,9 +106,10 @@ class PairDataset:
                 raise InputError(f"{name} is {value}; it must be at least {least}")
         self.root = plain_root(path)
         self.split = split
-        self.layers = check_layers(name for name in layers if name != PREVIOUS)
-        self._previous = PREVIOUS in layers
-        self._extra = (PREVIOUS,) if self._previous else ()
+        asked = (layers,) if isinstance(layers, str) else tuple(layers)
+        self._stored = check_layers(name for name in asked if name != PREVIOUS)
+        self._previous = PREVIOUS in asked
+        self.layers = (*self._stored, PREVIOUS) if self._previous else self._stored
         self._steps = np.arange(seq_length) * (frame_skip + 1)
         self._stride = seq_stride
         self._allow_partial = allow_partial
@@ -120,13 +129,13 @@ class PairDataset:
             raise InputError(f"{self.root} holds no layer '{missing[0]}'; it holds {', '.join(stored)}")
         self._groups = {
             member: tuple(LAYERS[x] for x in stored if LAYERS[x].member == member)
-            for member in layers_by_member(self.layers if self.retake is None else wanted)
+            for member in layers_by_member(self._stored if self.retake is None else wanted)
         }
         self._count_sequences()
 
     def _needed(self) -> tuple[str, ...]:
         """Layers that must be stored: a retaken thermal frame comes from radiance."""
-        needed = {*self.layers, *(("thermal",) if self._previous else ())}
+        needed = {*self._stored, *(("thermal",) if self._previous else ())}
         if self.retake is not None and "thermal" in needed:
             needed = needed - {"thermal"} | {"radiance"}
         return check_layers(needed)
@@ -146,14 +155,45 @@ class PairDataset:
         """How many samples there are up to the end of each clip, shape (clips,)."""
         return self._ends
 
+    @property
+    def clips(self) -> Clips:
+        """The clips there are samples of: map, world, hour, weather, ..., and ``samples``, the range of their indices.
+
+        >>> night = [i for clip in pairs.clips if clip["hour"] > 20 for i in clip["samples"]]  # doctest: +SKIP
+        """
+        return Clips(self._source, self._ends, self._clip_facts)
+
+    @property
+    def intrinsics(self) -> NDArray[np.float64]:
+        """Camera matrix K (3, 3) [px] of every frame; (0, 0) is the corner of the upper left pixel.
+
+        Raises
+        ------
+        InputError
+            If there is no frame, or their cameras differ: then each sample says its own ``K``.
+        """
+        heads = self._source.heads
+        if not len(heads) or (heads["K"] != heads["K"][0]).any():
+            raise InputError(f"{self.root} holds no camera that all frames share; take 'K' of each sample")
+        return np.array(checked(heads[0])["K"], np.float64)
+
+    def __repr__(self) -> str:
+        split = f", {self.split!r}" if self.split else ""
+        held = f"{len(self)} samples of {', '.join(self.layers) or 'poses'}, {len(self.clips)} clips"
+        return f"<PairDataset({str(self.root)!r}{split}): {held}>"
+
     def __len__(self) -> int:
         return int(self._ends[-1]) if len(self._ends) else 0
 
     def __iter__(self) -> Iterator[Sample]:
         return (self[i] for i in range(len(self)))
 
-    def __getitem__(self, index: SupportsIndex) -> Sample:
-        """Return one sample; negative indices count from the end.
+    @overload
+    def __getitem__(self, index: SupportsIndex) -> Sample: ...
+    @overload
+    def __getitem__(self, index: slice) -> Part: ...
+    def __getitem__(self, index: SupportsIndex | slice) -> Sample | Part:
+        """Return one sample, negative indices count from the end; or, of a slice, a sequence that reads when asked.
 
         Raises
         ------
@@ -162,15 +202,14 @@ class PairDataset:
         CorruptFrameError
             If the stored bytes are not what was written.
         """
-        length, at = len(self), operator.index(index)
-        at += length if at < 0 else 0
-        if not 0 <= at < length:
-            raise IndexError(f"sample {index} of {length}")
+        if isinstance(index, slice):
+            return Part(self, range(len(self))[index])
+        at = position(index, len(self))
         clip = int(np.searchsorted(self._ends, at, side="right"))
         before = int(self._ends[clip - 1]) if clip else 0
         first = int(self._source.starts[clip]) + 1 + (at - before) * self._stride
         frames = [self._frame(first + int(step), clip) for step in self._steps]
-        sample = frames[0] if len(frames) == 1 else _stacked(frames)
+        sample = frames[0] if len(frames) == 1 else stacked(frames)
         sample["facts"] = self._clip_facts(clip)
         return sample
 
@@ -178,7 +217,7 @@ class PairDataset:
         """Facts of a clip; those of the clips seen last are kept."""
         facts = self._facts.get(clip)
         if facts is None:
-            facts = self._facts[clip] = _facts(self._source.facts(clip))
+            facts = self._facts[clip] = facts_of(self._source.facts(clip))
             if len(self._facts) > _FACTS_KEPT:
                 self._facts.popitem(last=False)
         return dict(facts)
@@ -189,13 +228,13 @@ class PairDataset:
             raise CorruptFrameError(f"{self.root}/index.npy: rows are out of order; run `scenegen verify`")
         job = job_of(row)
         arrays = self._reader.frame(row, job, self._groups)
-        if self.retake is not None and (self._previous or "thermal" in self.layers):
+        if self.retake is not None and (self._previous or "thermal" in self._stored):
             arrays |= self._retaken(self.retake, arrays["radiance"], row, job, position)
         elif self._previous:
             before = checked(self._source.rows[position - 1])
             group = (LAYERS["thermal"],)
             arrays[PREVIOUS] = self._reader.arrays(before, job, "thermal.png", group)["thermal"]
-        sample: Sample = {name: arrays[name] for name in (*self.layers, *self._extra)}
+        sample: Sample = {name: arrays[name] for name in self.layers}
         return sample | {
             "key": job.key(int(row["frame"])),
             "map": job.map,
@@ -235,23 +274,3 @@ class PairDataset:
         self._open(source if isinstance(source, Source) else None)
         if not isinstance(source, Source) and self._source.content_id != source:
             raise DatasetError(f"{self.root} changed while it was being read; open it again")
-
-
-def _stacked(frames: list[Sample]) -> Sample:
-    """Join the frames of a sequence: arrays and numbers get a leading axis, what names the clip stays as it is."""
-    same = {"map", "world", "clip", "split"}
-    joined: Sample = {}
-    for name, value in frames[0].items():
-        values = [frame[name] for frame in frames]
-        if name in same:
-            joined[name] = value
-        elif isinstance(value, str) or name == "imu":  # frames are unequally long apart: so are their tables
-            joined[name] = values
-        else:
-            joined[name] = np.stack(values)
-    return joined
-
-
-def _facts(clip: Any) -> dict[str, Any]:
-    names = ("latitude_deg", "month", "day", "hour", "sun_elevation_deg", "speed_mps")
-    return {**{name: clip[name] for name in names}, **clip["weather"]}

@@ -60,6 +60,8 @@ class ShardReader:
         members : mapping of str to tuple of Layer
             Suffix to all the layers the member was written with.
         """
+        if not members:
+            return {}
         shape = (int(row["height_px"]), int(row["width_px"]))
         found: dict[str, NDArray[Any]] = {}
         for (member, layers), data in zip(members.items(), self._read(row, job, members), strict=True):

@@ -8,7 +8,8 @@ from typing import Any
 
 from scenegen.foundation.errors import InputError
 from scenegen_datasets.adapters.torch import PairLoader, collate
-from scenegen_datasets.loader import PairDataset, Sample
+from scenegen_datasets.loader import PairDataset
+from scenegen_datasets.sample import Sample
 
 try:
     from lightning import LightningDataModule

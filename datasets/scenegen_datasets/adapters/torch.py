@@ -9,7 +9,8 @@ import numpy as np
 
 from scenegen.foundation.errors import InputError
 from scenegen_datasets.epoch import Epoch
-from scenegen_datasets.loader import PairDataset, Sample
+from scenegen_datasets.loader import PairDataset
+from scenegen_datasets.sample import Sample
 
 try:
     import torch

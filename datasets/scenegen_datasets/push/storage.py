@@ -86,9 +86,9 @@ class StorageTarget:
             self._fs.makedirs(place.rpartition("/")[0], exist_ok=True)
         try:
             tried(lambda: self._fs.put_file(str(item.file), place), place)
-        except FileNotFoundError as error:
+        except FileNotFoundError:
             raise InputError(
-                f"{self._url}: {error}; make the bucket first, or check its name and your access"
+                f"{self._url}: there is no such bucket; make it first, or check its name and your access"
             ) from None
 
     def remove(self, paths: Sequence[str]) -> None:

@@ -13,16 +13,13 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+import hub as hubs
 from scenegen.foundation.errors import DatasetError, InputError
 from scenegen_datasets import PairDataset
 from scenegen_datasets.push import Pushed, push
 
 pytest.importorskip("huggingface_hub")
 pytestmark = pytest.mark.filterwarnings("ignore:Use .content=:DeprecationWarning")  # of huggingface_hub
-
-sys.path.insert(0, str(Path(__file__).parent))
-
-import hub as hubs  # noqa: E402 - beside this file; the tests are not a package
 
 URL = "hf://datasets/somebody/night-city"
 NAME = "somebody/night-city"

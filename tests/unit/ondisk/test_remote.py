@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import pickle
 import shutil
 import sys
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import served
 from scenegen.foundation.errors import CorruptFrameError, DatasetError, InputError
 from scenegen_datasets import PairDataset
 from scenegen_datasets.layers import DEFAULT_LAYERS
@@ -21,18 +21,6 @@ from scenegen_datasets.remote.disk import DiskFiles
 from scenegen_datasets.remote.web import WebFiles
 
 LAYERS = (*DEFAULT_LAYERS, "previous_thermal")
-
-
-def _load() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("ondisk_served", Path(__file__).with_name("served.py"))
-    assert spec is not None and spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-served = _load()
 
 
 @pytest.fixture(autouse=True)
