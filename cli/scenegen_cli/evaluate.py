@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 import tyro
 
+from scenegen.foundation.errors import InputError
 from scenegen_cli.console import note, say, say_json, table
 from scenegen_cli.parse import HelpShown, parse
 from scenegen_cli.teaching import Steps, need_torch
@@ -43,6 +44,7 @@ def run(arguments: Sequence[str]) -> int:
     except HelpShown:
         return 0
     need_torch()
+    from scenegen_datasets.place import make_directory
     from scenegen_trainers.evaluation.evaluate import evaluate
     from scenegen_trainers.evaluation.report import as_json, write_report
     from scenegen_trainers.evaluation.words import ANSWERS_HEAD, answer_rows
@@ -50,18 +52,22 @@ def run(arguments: Sequence[str]) -> int:
     from scenegen_trainers.training.machine import Machine
     from scenegen_trainers.training.source import TrainingData
 
+    if command.pairs < 0:
+        raise InputError(f"--pairs {command.pairs}: so many, or 0 for all")
     machine = Machine(command.accelerator, threads=command.threads)
     machine.settle()
+    device = machine.device()
     checkpoint, data = read_checkpoint(command.checkpoint), TrainingData.at(command.dataset)
+    out = command.out or command.checkpoint.parent / f"evaluation-{command.split}"
+    make_directory(out)
     found = evaluate(
         checkpoint,
         data,
         command.split,
         command.pairs,
-        device=machine.device(),
+        device=device,
         watch=Steps("judged", quiet=command.json),
     )
-    out = command.out or command.checkpoint.parent / f"evaluation-{command.split}"
     paths = write_report(found, checkpoint, data, out)
     if command.json:
         say_json(as_json(found))

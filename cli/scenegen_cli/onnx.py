@@ -43,8 +43,8 @@ def run(arguments: Sequence[str]) -> int:
     from scenegen_trainers.models.checkpoint import read_checkpoint
 
     found = []
-    for path in command.checkpoints:
-        checkpoint = read_checkpoint(path)
+    read = [(path, read_checkpoint(path)) for path in command.checkpoints]  # whatever is wrong is said first
+    for path, checkpoint in read:
         name = str(checkpoint.record.get("model", path.stem))
         ((entry, graph),) = budget({name: checkpoint}, (command.threads,), command.repeats)
         out = path.with_suffix(".onnx")

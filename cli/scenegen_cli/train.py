@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 from scenegen.foundation.errors import InputError
+from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
 from scenegen_cli.parse import HelpShown, parse
-from scenegen_cli.teaching import Steps, need_torch, recipe_help, sources, training_flags
+from scenegen_cli.teaching import Steps, need_torch, recipe_help, training_flags
 
 
 @dataclass(frozen=True)
@@ -67,14 +67,14 @@ def run(arguments: Sequence[str]) -> int:
         raise InputError("--data is missing: name the directory of a dataset that `scenegen render` made")
     need_torch()
     from scenegen_trainers.training.loop import train
-    from scenegen_trainers.training.machine import Machine
+    from scenegen_trainers.training.machine import Machine, is_first_process
     from scenegen_trainers.training.source import TrainingData
 
     machine = Machine(
         command.accelerator, command.devices, command.precision, command.threads, command.tensorboard
     )
     out = command.out or Path(f"{command.model}-seed{command.seed}")
-    speaks = os.environ.get("LOCAL_RANK", "0") == "0"  # one of several processes does
+    speaks = is_first_process()
     steps = Steps(command.model, quiet=command.json or not speaks)
     model = train(
         recipe, TrainingData.at(command.data), out, machine, lambda t: steps(t.step, t.steps, t.losses)

@@ -102,7 +102,7 @@ class Evil:
 def test_opening_a_checkpoint_runs_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     torch.save({**GOOD, "config": {"x": Evil()}}, "evil.pt")
-    with pytest.raises(InputError, match="no checkpoint of weights"):
+    with pytest.raises(InputError, match="no torch file of weights"):
         TorchDepth(Path("evil.pt"), CAMERA)
     assert not Path("ran.txt").exists()
 
@@ -164,7 +164,7 @@ def test_missing_libraries_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: 
         raise ImportError(name)
 
     for kind, module, extra in (
-        (TorchDepth, "scenegen_trainers.pilots.checkpoint", "torch"),
+        (TorchDepth, "scenegen_trainers.models.torch_file", "torch"),
         (OnnxDepth, "scenegen_trainers.pilots.onnx", "onnx"),
     ):
         with monkeypatch.context() as patch:

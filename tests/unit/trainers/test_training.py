@@ -11,10 +11,12 @@ import pytest
 import torch
 
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.lock import DirectoryLock
 from scenegen_datasets.resolve import Source
 from scenegen_render.camera import Camera
-from scenegen_trainers.models.checkpoint import read_checkpoint, unpacked
+from scenegen_trainers.models.checkpoint import read_checkpoint
 from scenegen_trainers.models.pix2pix import Pix2PixLearner
+from scenegen_trainers.models.torch_file import unpacked
 from scenegen_trainers.pilots.checkpoint import TorchDepth
 from scenegen_trainers.training.loop import MODEL, Taught, train
 from scenegen_trainers.training.machine import Machine
@@ -80,6 +82,34 @@ def test_another_training_is_not_overwritten(toy: Path, tmp_path: Path) -> None:
         taught(toy, tmp_path / "a", pix2pix={"w_l1": 300.0})
     with pytest.raises(InputError, match="another seed"):
         taught(toy, tmp_path / "a", seed=1)
+    with pytest.raises(InputError, match=r"another model \(pix2pix-flow, now fastdepth\)"):
+        taught(toy, tmp_path / "a", "fastdepth")
+
+
+def test_two_trainings_do_not_share_a_directory(toy: Path, tmp_path: Path) -> None:
+    (tmp_path / "a").mkdir()
+    with DirectoryLock(tmp_path / "a"), pytest.raises(InputError, match="is being written by process"):
+        taught(toy, tmp_path / "a")
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="is a file; name a directory"):
+        taught(toy, tmp_path / "file")
+
+
+@pytest.mark.parametrize(
+    ("machine", "said"),
+    [
+        (Machine(devices=0), "--devices 0: at least 1"),
+        (Machine(threads=0), "--threads 0: at least 1"),
+        (Machine("gpu"), "no GPU that torch can use"),
+    ],
+)
+def test_a_machine_that_is_none_is_one_line(
+    machine: Machine, said: str, toy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
+    with pytest.raises(InputError, match=said):
+        train(recipe(), TrainingData.at(toy), tmp_path / "a", machine)
+    assert not (tmp_path / "a").exists()
 
 
 def test_the_seed_decides(toy: Path, tmp_path: Path) -> None:
@@ -119,6 +149,17 @@ def test_noise_is_redrawn_from_epoch_to_epoch(toy: Path) -> None:
     assert (first == again).all() and (first != later).any()
     stored = data.samples("train", asked, stored=True)
     assert stored[Draw(2)].image.shape == first.shape
+
+
+def test_mirroring_before_or_after_embedding(toy: Path) -> None:
+    """Afterwards it moves the grid, since 31 is no multiple of 5; what is painted as truth is the same."""
+    data = TrainingData.at(toy)
+    before, after = (data.samples("train", recipe(training={"mirror": how})) for how in (True, "embedded"))
+    plain, straight, mirrored = before[Draw(1)], after[Draw(1)], after[Draw(1, mirror=True)]
+    assert (plain.image == straight.image).all()
+    assert (mirrored.image == plain.image[..., ::-1]).all()
+    other = before[Draw(1, mirror=True)]
+    assert (other.image != mirrored.image).any() and (other.depth_m == mirrored.depth_m).all()
 
 
 def test_every_epoch_shows_each_sample_once() -> None:
@@ -161,20 +202,28 @@ def test_what_is_no_checkpoint_is_refused_in_one_line(toy: Path, tmp_path: Path)
     path = taught(toy, tmp_path / "a")
     with pytest.raises(InputError, match="no such file"):
         read_checkpoint(tmp_path / "none.pt")
+    with pytest.raises(InputError, match=r"is a directory; .* model\.pt"):
+        read_checkpoint(tmp_path / "a")
     noise = tmp_path / "noise.pt"
     noise.write_bytes(b"\x80\x04 nonsense")
-    with pytest.raises(InputError, match="no checkpoint of weights"):
+    with pytest.raises(InputError, match="no torch file of weights"):
         read_checkpoint(noise)
     code = tmp_path / "code.pt"
     torch.save({"scenegen": "depth-1", "network": Path("x")}, code)
-    with pytest.raises(InputError, match="no checkpoint of weights"):
+    with pytest.raises(InputError, match="no torch file of weights"):
         read_checkpoint(code)
     with pytest.raises(InputError, match="no depth network"):
         read_checkpoint(tmp_path / "a" / "state.pt")
     content = unpacked(path)
     content["config"]["knobs"]["width"] = 8
     torch.save(content, tmp_path / "other.pt")
-    with pytest.raises(InputError, match="does not fit"):
+    with pytest.raises(InputError, match="do not fit"):
+        read_checkpoint(tmp_path / "other.pt")
+    torch.save({**content, "record": None}, tmp_path / "other.pt")
+    with pytest.raises(InputError, match="its key 'record' is missing"):
+        read_checkpoint(tmp_path / "other.pt")
+    torch.save({**content, "network": "torch.nn:Identity"}, tmp_path / "other.pt")
+    with pytest.raises(InputError, match=r"holds 'torch\.nn:Identity', no network of `scenegen train`"):
         read_checkpoint(tmp_path / "other.pt")
     content["config"]["architecture"] = "resnet"
     torch.save(content, tmp_path / "other.pt")
@@ -198,6 +247,11 @@ def test_a_dataset_that_does_not_fit_is_refused(bare: Path, tmp_path: Path) -> N
         ("pix2pix", {"inputs": {"intervall": 3}}, "perhaps you meant 'interval'"),
         ("pix2pix", {"pix2pix": {"w_l1": -1.0}}, r"--pix2pix\.w_l1"),
         ("pix2pix", {"inputs": {"gain_percent": [0.5, 0.5]}}, "two different shares"),
+        (
+            "pix2pix",
+            {"training": {"mirror": "embeded"}},
+            "unknown value 'embeded'; perhaps you meant 'embedded'",
+        ),
     ],
 )
 def test_bad_recipes_are_refused_in_one_line(model: str, keys: dict[str, Any], message: str) -> None:

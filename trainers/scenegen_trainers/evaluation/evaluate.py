@@ -15,6 +15,7 @@ from scenegen_trainers.evaluation.judge import PAINTED, WHOLE, Judge, Margins, S
 from scenegen_trainers.evaluation.trend import Trend, TrendMeter
 from scenegen_trainers.metrics import DepthReport, DepthScores, ValidDepth
 from scenegen_trainers.models.checkpoint import Checkpoint
+from scenegen_trainers.pilots.camera_check import HFOV_TOLERANCE_DEG
 from scenegen_trainers.training.samples import Samples
 from scenegen_trainers.training.source import TrainingData
 
@@ -162,7 +163,7 @@ def check_frames(checkpoint: Checkpoint, data: TrainingData) -> None:
     """
     trained, given = checkpoint.camera, data.camera()
     same = all(trained[k] == given[k] for k in ("width_px", "height_px"))
-    if not same or abs(trained["hfov_deg"] - given["hfov_deg"]) > 0.5:
+    if not same or abs(trained["hfov_deg"] - given["hfov_deg"]) > HFOV_TOLERANCE_DEG:
         raise InputError(
             f"{data.root} has {_in_words(given)}, the network was trained on {_in_words(trained)}; "
             "evaluate it on a dataset of its own camera"

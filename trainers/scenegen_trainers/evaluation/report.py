@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from scenegen.foundation.atomic import make_directories, write_atomic
+from scenegen.foundation.atomic import write_atomic
 from scenegen.foundation.canonical import pretty
+from scenegen_datasets.place import make_directory
 from scenegen_trainers.evaluation import words
 from scenegen_trainers.evaluation.answers import Answer, answers
 from scenegen_trainers.evaluation.evaluate import Evaluation, Judged
@@ -28,8 +29,23 @@ SHOWN = 6
 def write_report(
     evaluation: Evaluation, checkpoint: Checkpoint, data: TrainingData, out: Path
 ) -> tuple[Path, ...]:
-    """Write ``evaluation.html``, ``.md`` and ``.json``, ``best.png`` and ``worst.png``; returns their paths."""
-    root = make_directories(out.parent, out.name)
+    """Write ``evaluation.html``, ``.md`` and ``.json``, ``best.png`` and ``worst.png``; returns their paths.
+
+    Parameters
+    ----------
+    evaluation : Evaluation
+    checkpoint : Checkpoint
+    data : TrainingData
+        What was judged on what.
+    out : Path
+        Directory, which is made.
+
+    Raises
+    ------
+    InputError
+        If it cannot be made.
+    """
+    make_directory(out)
     ranked = sorted(evaluation.images, key=lambda image: (image.scores.rel, image.key))
     best, worst = (
         _answered(_one_per_clip(some), evaluation, checkpoint, data) for some in (ranked, ranked[::-1])
@@ -42,8 +58,8 @@ def write_report(
         "worst.png": _sheet("Worst answers", worst, evaluation),
     }
     for name, content in files.items():
-        write_atomic(root / name, content)
-    return tuple(root / name for name in files)
+        write_atomic(out / name, content)
+    return tuple(out / name for name in files)
 
 
 def as_json(evaluation: Evaluation) -> dict[str, Any]:

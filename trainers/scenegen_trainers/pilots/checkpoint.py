@@ -1,22 +1,7 @@
-"""Depth networks of torch, from a checkpoint that says how to build them.
-
-A checkpoint is what ``torch.save`` makes of a dictionary of plain data and tensors:
-
-    {
-      "scenegen": "depth-1",                       this protocol
-      "network": "package.module:Class",           a torch.nn.Module that can be imported
-      "config": {"width": 64},                     its keyword arguments
-      "state": network.state_dict(),
-      "camera": {"width_px": 256, "height_px": 256, "hfov_deg": 90.0},   what it was trained on; optional
-    }
-
-It is read with ``weights_only``, so opening one runs no code of its own; what is built is a class the machine already
-has, and only one that is a network.
-"""
+"""Depth networks of torch as sources of depth; their files are described in `scenegen_trainers.models.torch_file`."""
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -24,13 +9,11 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float32
 
-from scenegen.foundation.errors import InputError
 from scenegen_flythrough.loop.pilot import Need, Observation
 from scenegen_render.camera import Camera
-from scenegen_trainers.pilots.camera_check import check_camera
+from scenegen_trainers.models.torch_file import PROTOCOL, built, network_content, torch_for, write_packed
+from scenegen_trainers.pilots.camera_check import check_camera, frames_of
 from scenegen_trainers.pilots.frames import depth, frames
-
-PROTOCOL = "depth-1"
 
 
 class TorchDepth:
@@ -54,10 +37,10 @@ class TorchDepth:
 
     def __init__(self, path: Path, camera: Camera) -> None:
         self.name = path.stem
-        self._torch = _torch(path)
-        content = self._read(path)
+        self._torch = torch_for(path)
+        content = network_content(path)
         check_camera(path, content.get("camera"), camera)
-        self._network = self._build(path, content)
+        self._network = built(path, content)
 
     def estimate(self, seen: Observation) -> Float32[np.ndarray, "n rows columns"]:
         """Planar depth [m] of every pixel."""
@@ -67,34 +50,6 @@ class TorchDepth:
             answer = self._network(torch.from_numpy(now), torch.from_numpy(before))
         return depth(answer.numpy(), now)
 
-    def _read(self, path: Path) -> Mapping[str, Any]:
-        try:
-            content = self._torch.load(path, map_location="cpu", weights_only=True)
-        except Exception as error:  # whatever torch thinks of a file that is not its own
-            raise InputError(f"{path}: no checkpoint of weights and plain data ({_short(error)})") from None
-        if not isinstance(content, Mapping) or content.get("scenegen") != PROTOCOL:
-            raise InputError(f"{path}: no depth network: its key 'scenegen' does not say '{PROTOCOL}'")
-        for key, kind in (("network", str), ("config", Mapping), ("state", Mapping)):
-            if not isinstance(content.get(key), kind):
-                raise InputError(f"{path}: its key '{key}' is missing or of the wrong kind")
-        return content
-
-    def _build(self, path: Path, content: Mapping[str, Any]) -> Any:
-        where = content["network"]
-        try:
-            module, _, name = where.partition(":")
-            kind = getattr(importlib.import_module(module), name)
-        except Exception as error:
-            raise InputError(f"{path}: its network '{where}' cannot be imported ({_short(error)})") from None
-        if not (isinstance(kind, type) and issubclass(kind, self._torch.nn.Module)):
-            raise InputError(f"{path}: '{where}' is not a torch.nn.Module")
-        try:
-            network = kind(**content["config"])
-            network.load_state_dict(content["state"])
-        except Exception as error:
-            raise InputError(f"{path}: its weights do not fit '{where}' ({_short(error)})") from None
-        return network.eval()
-
 
 def save(
     path: Path,
@@ -102,7 +57,7 @@ def save(
     config: Mapping[str, Any],
     camera: Camera | None = None,
 ) -> None:
-    """Write a checkpoint.
+    """Write a network of your own as such a file.
 
     Parameters
     ----------
@@ -122,23 +77,5 @@ def save(
         "state": network.state_dict(),
     }
     if camera is not None:
-        hfov = 2.0 * float(np.degrees(np.arctan(0.5 * camera.width_px / camera.focal_px)))
-        content["camera"] = {
-            "width_px": camera.width_px,
-            "height_px": camera.height_px,
-            "hfov_deg": round(hfov, 6),
-        }
-    _torch(path).save(content, path)
-
-
-def _torch(path: Path) -> Any:
-    try:
-        return importlib.import_module("torch")
-    except ImportError:
-        raise InputError(
-            f"{path}: a torch checkpoint needs torch: pip install 'thermal-scenegen[torch]'"
-        ) from None
-
-
-def _short(error: Exception) -> str:
-    return " ".join(f"{type(error).__name__}: {error}".split())[:160]
+        content["camera"] = frames_of(camera.width_px, camera.height_px, camera.focal_px)
+    write_packed(path, content)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib
 import inspect
 from dataclasses import asdict, dataclass
@@ -11,6 +10,7 @@ from typing import Any, Literal
 
 from scenegen.foundation.canonical import digest
 from scenegen.foundation.errors import InputError, nearest
+from scenegen_datasets.manifest import file_sha256
 from scenegen_flythrough.loop.knobs import LoopKnobs
 from scenegen_flythrough.loop.pilot import Pilot
 from scenegen_flythrough.loop.pilots import ConstantDepth, DepthPilot, DepthSource, TrueDepth
@@ -170,8 +170,7 @@ def _checked(made: Any, word: str, parts: tuple[str, ...]) -> Any:
 
 def _sha256(path: Path) -> str:
     try:
-        with path.open("rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
+        return file_sha256(path)
     except OSError as error:
         raise InputError(f"--pilot {path}: cannot be read: {error.strerror}") from None
 

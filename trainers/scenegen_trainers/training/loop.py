@@ -6,6 +6,7 @@ from __future__ import annotations
 import io
 import math
 from collections.abc import Callable, Iterable
+from contextlib import nullcontext
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -16,7 +17,9 @@ from torch.utils.data import DataLoader
 
 from scenegen.foundation.atomic import write_atomic
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.lock import DirectoryLock
 from scenegen.foundation.rng import stream
+from scenegen_datasets.place import make_directory
 from scenegen_trainers.evaluation.answers import Answer, answers
 from scenegen_trainers.evaluation.pictures import answer_sheet
 from scenegen_trainers.inputs.target import decode
@@ -25,7 +28,7 @@ from scenegen_trainers.models.checkpoint import write_checkpoint
 from scenegen_trainers.models.learner import Batch, Learner
 from scenegen_trainers.models.registry import ARCHITECTURES
 from scenegen_trainers.training.log import Log
-from scenegen_trainers.training.machine import Machine
+from scenegen_trainers.training.machine import Machine, is_first_process
 from scenegen_trainers.training.recipe import TrainingRecipe
 from scenegen_trainers.training.samples import batches, collate
 from scenegen_trainers.training.source import TrainingData
@@ -81,17 +84,17 @@ def train(
     Raises
     ------
     InputError
-        If `out` holds another training, the dataset does not fit, or the losses stop being numbers.
+        If `out` holds another training or one that still runs, the dataset does not fit, or the losses stop being
+        numbers.
     """
     fabric = machine.fabric(out)
-    fabric.launch()
-    out.mkdir(parents=True, exist_ok=True)
-    identity = {"recipe": recipe.deciding(), "dataset": data.content_id}
-    state = read_state(out, identity)
-    if state is not None and state["step"] == recipe.training.steps and (out / MODEL).is_file():
-        return out / MODEL
-    school = _School(recipe, data, out, fabric, machine.precision, identity)
-    school.teach(state, watch)
+    make_directory(out)
+    with DirectoryLock(out) if is_first_process() else nullcontext():
+        fabric.launch()
+        identity = {"recipe": recipe.deciding(), "dataset": data.content_id}
+        state = read_state(out, identity)
+        if state is None or state["step"] < recipe.training.steps or not (out / MODEL).is_file():
+            _School(recipe, data, out, fabric, machine.precision, identity).teach(state, watch)
     return out / MODEL
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -41,8 +42,9 @@ class Machine:
 
     def settle(self) -> None:
         """Make this process compute the same result every time."""
-        if self.threads < 1:
-            raise InputError(f"--threads {self.threads}: at least 1")
+        for flag, value in (("--threads", self.threads), ("--devices", self.devices)):
+            if value < 1:
+                raise InputError(f"{flag} {value}: at least 1")
         os.environ.setdefault("CUBLAS_WORKSPACE_CONFIG", ":4096:8")
         torch.set_num_threads(self.threads)
         # What has no deterministic form on a GPU is said in a warning there, and is an error on the CPU.
@@ -58,9 +60,12 @@ class Machine:
         InputError
             If a GPU is asked for and none is there.
         """
+        self._need_gpu()
+        return "cuda" if self.accelerator == "gpu" else "cpu"
+
+    def _need_gpu(self) -> None:
         if self.accelerator == "gpu" and not torch.cuda.is_available():
             raise InputError("no GPU that torch can use; take --accelerator cpu")
-        return "cuda" if self.accelerator == "gpu" else "cpu"
 
     def fabric(self, out: Path) -> Any:
         """Lightning Fabric on these devices.
@@ -71,6 +76,7 @@ class Machine:
             If lightning or tensorboard is missing, or the devices are not there.
         """
         self.settle()
+        self._need_gpu()
         try:
             lightning = importlib.import_module("lightning.fabric")
             strategies = importlib.import_module("lightning.fabric.strategies")
@@ -78,9 +84,7 @@ class Machine:
             raise InputError(
                 "training needs torch and lightning: pip install 'thermal-scenegen[train]'"
             ) from None
-        # Every process normalises by its own part of a batch; its running means must not be overwritten between the
-        # two looks a discriminator takes.
-        strategy = strategies.DDPStrategy(broadcast_buffers=False) if self.devices > 1 else "auto"
+        strategy = strategies.DDPStrategy(**_own_buffers()) if self.devices > 1 else "auto"
         try:
             return lightning.Fabric(
                 accelerator=self.accelerator,
@@ -100,3 +104,15 @@ class Machine:
             return [loggers.TensorBoardLogger(str(out), name="tensorboard", version="")]
         except (ImportError, ModuleNotFoundError):
             raise InputError("--tensorboard needs it installed: pip install tensorboard") from None
+
+
+def is_first_process() -> bool:
+    """Whether this process speaks and writes for all that share a training; true where there is only one."""
+    return all(os.environ.get(name, "0") == "0" for name in ("LOCAL_RANK", "NODE_RANK", "GROUP_RANK"))
+
+
+def _own_buffers() -> dict[str, bool]:
+    """Every process normalises by its own part of a batch; its running means must not be overwritten between the two
+    looks a discriminator takes. How that is said depends on torch."""
+    known = inspect.signature(torch.nn.parallel.DistributedDataParallel).parameters
+    return {"forward_sync_buffers" if "forward_sync_buffers" in known else "broadcast_buffers": False}

@@ -25,8 +25,10 @@ class TrainingKnobs(Section):
     """Of Adam at the start."""
     decay_from: Annotated[Number, Field(ge=0.0, le=1.0)] = 0.5
     """Share of the steps after which the learning rate falls linearly towards zero."""
-    mirror: bool = True
-    """Show every sample mirrored half of the time. Thermal image and flow are mirrored, then embedded."""
+    mirror: Literal[True, False, "embedded"] = True
+    """Show every sample mirrored half of the time. Thermal image and flow are mirrored, then embedded (true), so that
+    the grid of Eq. (1) stays where it is; embedded mirrors the embedded image, which moves the grid unless the width is
+    one more than a multiple of the interval; false mirrors nothing."""
     noise: Literal["stored", "redrawn"] = "stored"
     """Thermal frames as they are stored, or sensed anew from radiance at every epoch with noise of its own: one
     render, many cameras. Needs the layer radiance."""

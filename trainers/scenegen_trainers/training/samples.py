@@ -63,6 +63,8 @@ class Samples:
         Keep composed inputs in memory: flow is computed once.
     redrawn : Redrawn, optional
         Senses thermal frames anew at every epoch; nothing is kept then.
+    mirror_embedded : bool
+        Mirror what is composed, grid and all, instead of composing what is mirrored.
 
     Raises
     ------
@@ -78,8 +80,9 @@ class Samples:
         pairs: int = 0,
         keep: bool = False,
         redrawn: Redrawn | None = None,
+        mirror_embedded: bool = False,
     ) -> None:
-        self.inputs = inputs
+        self.inputs, self._mirror_embedded = inputs, mirror_embedded
         self._redrawn = redrawn
         self._dataset = _opened(root, split, inputs, redrawn is not None)
         if len(self._dataset) == 0:
@@ -96,11 +99,11 @@ class Samples:
     def __getitem__(self, draw: Draw) -> Shown:
         key = (draw.index, draw.mirror)
         if self._kept is None:
-            return _shown(*self._seen(draw), draw.mirror, self.inputs)
+            return self._shown(*self._seen(draw), draw.mirror)
         if key not in self._kept:
             seen, depth = self._seen(draw)
             for mirror in (False, True):
-                self._kept[draw.index, mirror] = _shown(seen, depth, mirror, self.inputs)
+                self._kept[draw.index, mirror] = self._shown(seen, depth, mirror)
         return self._kept[key]
 
     def only(self, index: Sequence[int]) -> Samples:
@@ -113,6 +116,13 @@ class Samples:
     def raw(self, position: int) -> dict[str, Any]:
         """The dataset's own sample, for those who need more than a network may know."""
         return self._dataset[int(self.index[position])]
+
+    def _shown(self, seen: Look, depth: Float32[np.ndarray, "rows columns"], mirror: bool) -> Shown:
+        if not mirror:
+            return Shown(compose(seen, self.inputs), depth)
+        if self._mirror_embedded:
+            return Shown(compose(seen, self.inputs)[..., ::-1], depth[:, ::-1])
+        return Shown(compose(seen.mirrored(), self.inputs), depth[:, ::-1])
 
     def _seen(self, draw: Draw) -> tuple[Look, Float32[np.ndarray, "rows columns"]]:
         sample = self.raw(draw.index)
@@ -174,12 +184,6 @@ def collate(target: TargetKnobs, shown: Sequence[Shown]) -> Batch:
     )
 
 
-def _shown(seen: Look, depth: Float32[np.ndarray, "rows columns"], mirror: bool, inputs: InputKnobs) -> Shown:
-    if mirror:
-        return Shown(compose(seen.mirrored(), inputs), depth[:, ::-1])
-    return Shown(compose(seen, inputs), depth)
-
-
 def _opened(root: Path, split: str, inputs: InputKnobs, redrawn: bool) -> PairDataset:
     thermal = ("radiance",) if redrawn else ("thermal", PREVIOUS)
     flow = ("flow_back",) if inputs.flow == "truth" else ()
@@ -187,7 +191,7 @@ def _opened(root: Path, split: str, inputs: InputKnobs, redrawn: bool) -> PairDa
         return PairDataset(root, split, (*thermal, "depth", *flow), seq_length=2 if redrawn else 1)
     except InputError as error:
         if "holds no layer" in str(error):
-            raise InputError(f"{error}; render the dataset with it (--layers)") from None
+            raise InputError(f"{error}; `scenegen render --layers ...` makes one that does") from None
         raise
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ from scenegen.foundation.errors import InputError
 from scenegen_datasets.description import read_description
 from scenegen_datasets.loader import PairDataset
 from scenegen_datasets.store import DATASET
+from scenegen_trainers.pilots.camera_check import frames_of
 from scenegen_trainers.training.recipe import TrainingRecipe
 from scenegen_trainers.training.redraw import Redrawn
 from scenegen_trainers.training.samples import Samples
@@ -61,14 +61,14 @@ class TrainingData:
         """A split as a recipe's network is shown it; with `stored`, frames as stored, whatever the recipe."""
         redraw = recipe.training.noise == "redrawn" and not stored
         redrawn = Redrawn.of(self.root, self.band_um, recipe.seed) if redraw else None
-        return Samples(self.root, split, recipe.inputs, pairs, keep, redrawn)
+        embedded = recipe.training.mirror == "embedded"
+        return Samples(self.root, split, recipe.inputs, pairs, keep, redrawn, embedded)
 
     def camera(self) -> dict[str, Any]:
         """Size and field of view of its frames, as checkpoints name them."""
         sample = PairDataset(self.root, layers=("thermal",))[0]
         rows, columns = sample["thermal"].shape
-        hfov = 2.0 * math.degrees(math.atan(0.5 * columns / float(sample["K"][0, 0])))
-        return {"width_px": columns, "height_px": rows, "hfov_deg": round(hfov, 6)}
+        return frames_of(columns, rows, float(sample["K"][0, 0]))
 
     def record(self) -> dict[str, str]:
         """What checkpoints and reports say about it."""

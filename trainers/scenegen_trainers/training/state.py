@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from scenegen.foundation.atomic import write_atomic
 from scenegen.foundation.errors import InputError
-from scenegen_trainers.models.checkpoint import packed, unpacked
+from scenegen_trainers.models.torch_file import unpacked, write_packed
 
 STATE = "state.pt"
 _FORMAT = "training-1"
@@ -17,7 +16,7 @@ _FORMAT = "training-1"
 def write_state(out: Path, identity: Mapping[str, Any], step: int, learner: Mapping[str, Any]) -> None:
     """Replace the saved state, whole or not at all."""
     content = {"scenegen": _FORMAT, "identity": dict(identity), "step": step, "learner": dict(learner)}
-    write_atomic(out / STATE, packed(content))
+    write_packed(out / STATE, content)
 
 
 def read_state(out: Path, identity: Mapping[str, Any]) -> dict[str, Any] | None:
@@ -43,11 +42,11 @@ def read_state(out: Path, identity: Mapping[str, Any]) -> dict[str, Any] | None:
 
 
 def _difference(old: Any, new: Any, path: str = "") -> str:
-    """Dotted name of the first key at which two nested mappings differ, with both values."""
+    """Dotted name of the first key at which two nested mappings differ, with both values; the model comes first."""
     if not (isinstance(old, Mapping) and isinstance(new, Mapping)):
         same = old == new or (isinstance(old, list | tuple) and list(old) == list(new))
         return "" if same else f"{path.removeprefix('recipe.')} ({str(old)[:40]}, now {str(new)[:40]})"
-    for key in sorted({*old, *new}):
+    for key in sorted({*old, *new}, key=lambda key: (key != "model", key)):
         found = _difference(old.get(key), new.get(key), f"{path}.{key}" if path else str(key))
         if found:
             return found
