@@ -65,7 +65,7 @@ def open_inside(root: Path, path: str) -> int:
     DatasetError
         If there is no plain file at this place, or it cannot be read.
     """
-    *folders, name = _steps(path)
+    *folders, name = steps_of(path)
     with folder_inside(root, "/".join(folders), path) as folder:
         try:
             descriptor = os.open(name, _FILE, dir_fd=folder)
@@ -90,7 +90,7 @@ def folder_inside(root: Path, path: str, where: str | None = None) -> Iterator[i
         try:
             here = os.open(root, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
             steps.callback(os.close, here)
-            for step in _steps(path) if path else ():
+            for step in steps_of(path) if path else ():
                 here = os.open(step, _FOLDER, dir_fd=here)
                 steps.callback(os.close, here)
         except OSError as error:
@@ -132,6 +132,20 @@ def sha256_inside(root: Path, path: str, max_bytes: int = 1 << 30) -> str:
             raise _refusal(path, error) from None
 
 
+def steps_of(path: str) -> list[str]:
+    """Names of the folders on the way to a file, and its own.
+
+    Raises
+    ------
+    DatasetError
+        If the path is absolute, leads up, or is none.
+    """
+    steps = path.split("/")
+    if {"", ".", ".."} & set(steps) or "\0" in path:
+        raise DatasetError(f"{printable(path)}: not a path below a dataset")
+    return steps
+
+
 def walk(root: Path, below: str = "") -> Iterator[Entry]:
     """Everything below a directory, or below one folder in it; neither links nor folders below `MAX_DEPTH` are entered.
 
@@ -160,13 +174,6 @@ def _kind(entry: os.DirEntry[str]) -> Kind:
     if entry.is_dir(follow_symlinks=False):
         return "folder"
     return "file" if entry.is_file(follow_symlinks=False) else "other"
-
-
-def _steps(path: str) -> list[str]:
-    steps = path.split("/")
-    if {"", ".", ".."} & set(steps) or "\0" in path:
-        raise DatasetError(f"{printable(path)}: not a path below a dataset")
-    return steps
 
 
 def _refusal(path: str, error: OSError) -> DatasetError:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from scenegen.foundation.errors import DatasetError, InputError
 from scenegen.foundation.printable import printable
-from scenegen_datasets.inside import folder_inside
+from scenegen_datasets.inside import folder_inside, steps_of
 
 _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC
 
@@ -23,12 +23,12 @@ def remove_inside(root: Path, path: str) -> None:
     Raises
     ------
     DatasetError
-        If a step of the path is a link, or the folder holds another file system.
+        If the path leads elsewhere, a step of it is a link, or the folder holds another file system.
     InputError
         If it may not be removed.
     """
-    above, _, name = path.rpartition("/")
-    with folder_inside(root, above, path) as parent:
+    *above, name = steps_of(path)
+    with folder_inside(root, "/".join(above), path) as parent:
         try:
             device = os.fstat(parent).st_dev
             waiting = [name]
