@@ -94,17 +94,17 @@ def _refuse_collisions(parts: Sequence[Part]) -> None:
     for part in parts:
         for clip, origin, world in zip(part.clips, part.origins, part.worlds, strict=True):
             job, recipe = clip.job, str(origin.entry["recipe_id"])
-            before = clips.setdefault((world, job.clip), part)
-            if before is not part:
-                raise InputError(
-                    f"clip {job.name} of seed {origin.seed} is in {before.root} and in {part.root}, and a merged "
-                    f"dataset holds a clip once; {_REMEDY}"
-                )
             first, made_by = worlds.setdefault(world, (part, recipe))
             if made_by != recipe:
                 raise InputError(
                     f"{job.map}-{job.world:05d} of seed {origin.seed} is in {first.root} and, by another recipe, in "
                     f"{part.root}: one place twice; {_REMEDY}"
+                )
+            before = clips.setdefault((world, job.clip), part)
+            if before is not part:
+                raise InputError(
+                    f"clip {job.name} of seed {origin.seed} is in {before.root} and in {part.root}, by the same "
+                    f"recipe: the larger one may hold all of the other; else {_REMEDY}"
                 )
 
 

@@ -38,7 +38,8 @@ def test_collisions_are_refused_with_the_clip_and_where_it_is(
 ) -> None:
     again = make_map(tmp_path / "again", "field", 2, seed=1)
     with pytest.raises(
-        InputError, match=rf"clip field-00000-000 of seed 1 is in {parts['field']} and in {again}"
+        InputError,
+        match=rf"clip field-00000-000 of seed 1 is in {parts['field']} and in {again}, by the same recipe",
     ):
         merge(tmp_path / "all", [parts["field"], again])
     with pytest.raises(InputError, match=f"{parts['city']} is named twice"):
