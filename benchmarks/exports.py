@@ -10,12 +10,14 @@ before the next one is made.
 from __future__ import annotations
 
 import argparse
+import os
 import platform
 import shutil
 import sys
 import time
 from pathlib import Path
 
+os.environ["HF_DATASETS_DISABLE_PROGRESS_BARS"] = "1"
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 import numpy as np
@@ -39,6 +41,8 @@ def main() -> None:
     print(f"{'format':12}{'compared':>9}{'CPU ms/frame':>14}{'kB/frame':>10}  largest errors")
     for name in arguments.to or CONSUMERS:
         root = arguments.work / name
+        if root.exists():
+            sys.exit(f"{root} is there already and would not be timed; remove it or give another WORK")
         began = time.process_time()
         outcome = export(Request(arguments.dataset, root, name, splits=splits))
         spent = time.process_time() - began

@@ -96,12 +96,12 @@ def _kitti_flow(path: Path | None) -> np.ndarray | None:
 
 def tartanair(root: Path) -> Iterator[Seen]:
     """`read_decode_depth` and `read_decode_flow` of tartanairpy's page on modalities; NED poses."""
-    K = np.array(json.loads((root / "intrinsics.json").read_text())["K"])
     environments = [
         name for names in json.loads((root / "splits.json").read_text()).values() for name in names
     ]
     for home in (p for name in environments for p in sorted((root / name / "Data_easy").glob("P*"))):
         poses = np.loadtxt(home / "pose_lcam_front.txt")
+        K = np.array(json.loads((home / "intrinsics.json").read_text())["K"])
         for k, pose in enumerate(poses):
             name = f"{k:06d}_lcam_front"
             bytes_ = cv2.imread(str(home / f"depth_lcam_front/{name}_depth.png"), cv2.IMREAD_UNCHANGED)

@@ -175,6 +175,8 @@ def _plan(request: Request) -> _Plan:
             f"(it holds {', '.join(source.layers)})"
         )
     positions, jobs = _chosen(request, source)
+    if target.one_camera:
+        _refuse_second_camera(target, source, positions, jobs)
     identity = {
         "format": target.name,
         "dataset": description["name"],
@@ -188,7 +190,7 @@ def _plan(request: Request) -> _Plan:
 
 def _chosen(request: Request, source: Source) -> tuple[tuple[int, ...], tuple[ClipJob, ...]]:
     """Clips of the splits and maps that were asked for, in plan order."""
-    jobs = [job_of(checked(source.rows[int(start)])) for start in source.starts]
+    jobs = [job_of(checked(head)) for head in source.heads]
     for flag, asked, known in (
         ("split", request.splits, set(SPLITS)),
         ("map", request.maps, {job.map for job in jobs}),
@@ -207,6 +209,18 @@ def _chosen(request: Request, source: Source) -> tuple[tuple[int, ...], tuple[Cl
             f"{request.dataset} holds no clip of what was asked for; ask for another --split or --map"
         )
     return tuple(position for position, _ in chosen), tuple(job for _, job in chosen)
+
+
+def _refuse_second_camera(
+    target: Format, source: Source, positions: Sequence[int], jobs: Sequence[ClipJob]
+) -> None:
+    intrinsics = source.heads["K"][list(positions)]
+    other = np.flatnonzero((intrinsics != intrinsics[0]).any(axis=(1, 2)))
+    if other.size:
+        raise InputError(
+            f"--to {target.name} holds one camera, and {jobs[0].name} and {jobs[int(other[0])].name} differ in K; "
+            "export them apart (--map, --split)"
+        )
 
 
 def _prepare(request: Request, plan: _Plan) -> None:

@@ -76,6 +76,8 @@ class Format:
         Layers it writes if the dataset holds them.
     pairs_only : bool
         Whether it leaves out frame 0 of each clip, which is no pair.
+    one_camera : bool
+        Whether it has room for the intrinsics of one camera only; parts of a merged dataset may differ in theirs.
     bytes_per_pixel : float
         Size of a frame on disk, on the high side; measured on city flights.
     write : callable
@@ -103,6 +105,7 @@ class Format:
     bytes_per_pixel: float
     write: Callable[[Clip, Stage, Options], Written]
     pairs_only: bool = False
+    one_camera: bool = False
     takes: tuple[str, ...] = ()
     finish: Finish = nothing_to_finish
     heeds: frozenset[str] = frozenset()

@@ -29,6 +29,12 @@ LOW_SHARE, HIGH_SHARE = 0.01, 0.99
 CLIPPED = "thermal_clipped"
 """Name of the count of pixels outside the gain's ends."""
 
+CLIPPING = {CLIPPED: "thermal pixels beyond the gain became black or white"}
+"""What that count means, for `scenegen_datasets.exports.format.Format.invalid`."""
+
+CHOICES = frozenset({"gain", "gain_K"})
+"""Options that a format with eight bits of thermal heeds."""
+
 
 @dataclass(frozen=True, eq=False)
 class Gain:

@@ -47,19 +47,28 @@ def record(job: ClipJob) -> ClipRecord:
     return replace(fakes.record(job), sensor=sensor)
 
 
-def make(root: Path, clips: int = 6, layers: tuple[str, ...] = DEFAULT_LAYERS) -> Path:
-    """A finished dataset of clips with 3 pairs, two of each split."""
+def _seen_by(camera: int, K: np.ndarray) -> np.ndarray:
+    """Intrinsics of one of several cameras, longer one by one; the first is that of the hand-made frames."""
+    return K * np.array([[1.0 + camera, 1.0, 1.0], [1.0, 1.0 + camera, 1.0], [1.0, 1.0, 1.0]])
+
+
+def make(root: Path, clips: int = 6, layers: tuple[str, ...] = DEFAULT_LAYERS, cameras: int = 1) -> Path:
+    """A finished dataset of clips with 3 pairs, two of each split; cameras take turns, as in a merged one."""
     root.mkdir()
     plan = fakes.jobs(clips)
     with DirectoryLock(root):
         create_or_open(root, "map: city\n", fakes.lock(clips * fakes.PAIRS))
         for job in plan:
             rng = np.random.default_rng(job.ordinal)
+            K = _seen_by(job.ordinal % cameras, meta(job, 0).K)
             frames = (
-                encode_frame(job.key(k), fakes.frame(rng), fakes.reading(rng), meta(job, k), layers)
+                encode_frame(
+                    job.key(k), fakes.frame(rng), fakes.reading(rng), replace(meta(job, k), K=K), layers
+                )
                 for k in range(job.frames)
             )
-            commit_clip(root, record(job), frames, fingerprint=fakes.FINGERPRINT)
+            facts = replace(record(job), K=tuple(map(tuple, K.tolist())))
+            commit_clip(root, facts, frames, fingerprint=fakes.FINGERPRINT)
         finish(root, plan)
     return root
 
@@ -70,7 +79,7 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return make(tmp_path_factory.mktemp("small") / "dataset")
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def make_dataset() -> Callable[..., Path]:
     """`make`, for tests that need another dataset."""
     return make

@@ -12,6 +12,7 @@ from consumers import CONSUMERS, check
 from consumers.pictures import ms2, pix2pix
 from consumers.scenes import tum
 from consumers.seen import Original, Rule, compare
+from scenegen.foundation.errors import InputError
 from scenegen_datasets.exports.formats.ms2 import PLANCK_B, PLANCK_F, PLANCK_O, PLANCK_R
 from scenegen_datasets.exports.registry import FORMATS
 
@@ -36,6 +37,32 @@ def test_consumer_sees_the_dataset(
     inner = 12 if name == "monodepth2" else PAIRS
     assert compared == inner * len(CONSUMERS[name])
     assert errors, "a reader that compares nothing proves nothing"
+
+
+@pytest.fixture(scope="module")
+def two_cameras(make_dataset: Callable[..., Path], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """As parts of a merged dataset may have them."""
+    return make_dataset(tmp_path_factory.mktemp("cameras") / "dataset", cameras=2)
+
+
+@pytest.mark.parametrize(
+    "name", ["kitti", "tartanair", "ms2", "filelist", "nerfstudio", "colmap", "tum", "hf"]
+)
+def test_each_clip_keeps_its_camera(
+    name: str, run: Callable[..., object], two_cameras: Path, tmp_path: Path
+) -> None:
+    if name == "hf":
+        pytest.importorskip("datasets.arrow_dataset")
+    run(name, dataset=two_cameras)
+    check(name, tmp_path / "out", two_cameras)
+
+
+def test_a_format_of_one_camera_refuses_a_second(
+    run: Callable[..., object], two_cameras: Path, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=r"holds one camera, and \S+ and \S+ differ in K; export them apart"):
+        run("monodepth2", dataset=two_cameras)
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("name", [n for n, each in FORMATS.items() if n != "rerun"])

@@ -15,7 +15,7 @@ from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip
 from scenegen_datasets.exports.format import Exported, Format, Written
 from scenegen_datasets.exports.formats.kitti import INVALID, UNIT_M
-from scenegen_datasets.exports.gain import CLIPPED, gain_of
+from scenegen_datasets.exports.gain import CHOICES, CLIPPED, gain_of
 from scenegen_datasets.exports.integers import FAR, add, depth_u16
 from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.png import colour_png, png
@@ -83,7 +83,7 @@ FORMAT = Format(
     pairs_only=True,
     write=write,
     finish=finish,
-    heeds=frozenset({"gain", "gain_K"}),
+    heeds=CHOICES,
     invalid={
         **INVALID,
         FAR_CENTIMETRES: "pixels with a surface beyond 655.34 m became 65535 (sky) in depth_cm",

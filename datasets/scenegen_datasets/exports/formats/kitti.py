@@ -15,7 +15,7 @@ import numpy as np
 from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip, Picture
 from scenegen_datasets.exports.format import Format, Written
-from scenegen_datasets.exports.gain import CLIPPED, gain_of
+from scenegen_datasets.exports.gain import CHOICES, CLIPPED, CLIPPING, gain_of
 from scenegen_datasets.exports.integers import FAR, FLOW_OUTSIDE, NEAR, add, depth_u16, flow_u16
 from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.png import colour_png, png
@@ -26,7 +26,7 @@ UNIT_M = 1.0 / 256.0
 """What one step of depth is worth [m]."""
 
 INVALID = {
-    CLIPPED: "thermal pixels beyond the gain became black or white",
+    **CLIPPING,
     FAR: "pixels with a surface beyond 255.99 m became 0 (no depth)",
     NEAR: "pixels with a surface nearer than 2 mm became 0 (no depth)",
 }
@@ -102,6 +102,6 @@ FORMAT = Format(
     takes=("flow", "covisible"),
     bytes_per_pixel=8.0,
     write=write,
-    heeds=frozenset({"gain", "gain_K"}),
+    heeds=CHOICES,
     invalid={**INVALID, FLOW_OUTSIDE: "pixels whose flow is unknown or beyond 512 px became invalid"},
 )

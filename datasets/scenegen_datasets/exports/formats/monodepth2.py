@@ -17,7 +17,7 @@ from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip
 from scenegen_datasets.exports.format import Exported, Format, Written
 from scenegen_datasets.exports.formats.kitti import INVALID, UNIT_M
-from scenegen_datasets.exports.gain import CLIPPED, gain_of
+from scenegen_datasets.exports.gain import CHOICES, CLIPPED, gain_of
 from scenegen_datasets.exports.integers import add, depth_u16
 from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.png import colour_png, png
@@ -92,8 +92,9 @@ FORMAT = Format(
     sky="depth 0",
     needs=("thermal", "depth"),
     bytes_per_pixel=3.5,
+    one_camera=True,
     write=write,
     finish=finish,
-    heeds=frozenset({"gain", "gain_K"}),
+    heeds=CHOICES,
     invalid=INVALID,
 )

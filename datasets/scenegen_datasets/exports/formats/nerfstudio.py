@@ -16,7 +16,7 @@ import numpy as np
 from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip, Picture
 from scenegen_datasets.exports.format import Format, Written
-from scenegen_datasets.exports.gain import CLIPPED, gain_of
+from scenegen_datasets.exports.gain import CHOICES, CLIPPED, CLIPPING, gain_of
 from scenegen_datasets.exports.integers import add
 from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.png import colour_png
@@ -84,6 +84,6 @@ FORMAT = Format(
     needs=("thermal", "depth"),
     bytes_per_pixel=5.5,
     write=write,
-    heeds=frozenset({"gain", "gain_K"}),
-    invalid={CLIPPED: "thermal pixels beyond the gain became black or white"},
+    heeds=CHOICES,
+    invalid=CLIPPING,
 )

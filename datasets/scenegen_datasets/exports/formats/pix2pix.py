@@ -10,7 +10,7 @@ import numpy as np
 from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip
 from scenegen_datasets.exports.format import Format, Written
-from scenegen_datasets.exports.gain import CLIPPED, gain_of
+from scenegen_datasets.exports.gain import CHOICES, CLIPPED, CLIPPING, gain_of
 from scenegen_datasets.exports.integers import add
 from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.png import colour_png
@@ -46,9 +46,9 @@ FORMAT = Format(
     bytes_per_pixel=2.0,
     pairs_only=True,
     write=write,
-    heeds=frozenset({"gain", "gain_K", "depth_cap_m"}),
+    heeds=CHOICES | {"depth_cap_m"},
     invalid={
-        CLIPPED: "thermal pixels beyond the gain became black or white",
+        **CLIPPING,
         CAPPED: "pixels with a surface beyond the cap became white",
     },
 )

@@ -2,8 +2,8 @@
 
 An environment is a world, a trajectory a clip; the one difficulty is called ``easy``. Depth is the float32 itself, its
 four bytes as the channels of a PNG. Flow is the older 16-bit kind with a mask (0 seen in the next frame, 1 hidden
-there, 100 outside of it). Poses are NED. TartanAir's camera is always 640x640 with 90 degrees; that of a dataset stands
-in ``intrinsics.json``.
+there, 100 outside of it). Poses are NED. TartanAir's camera is always 640x640 with 90 degrees; ours stands in
+``intrinsics.json`` of each trajectory.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip, Picture
 from scenegen_datasets.exports.format import Exported, Format, Written
-from scenegen_datasets.exports.gain import CLIPPED, gain_of
+from scenegen_datasets.exports.gain import CHOICES, CLIPPED, CLIPPING, gain_of
 from scenegen_datasets.exports.integers import FLOW_OUTSIDE, add, flow_u16
 from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.png import colour_png, png
@@ -56,7 +56,10 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
         add(counts, {CLIPPED: gain.clipped(picture["thermal"])})
     stage.put(f"{home}/pose_{_CAMERA}.txt", "\n".join(poses) + "\n")
     stage.put(f"{home}/gain.json", pretty(dict(gain.facts)))
-    return Written(counts, {"K": picture.K.tolist()})
+    rows, columns = clip.shape
+    camera = {"K": picture.K.tolist(), "height_px": rows, "width_px": columns}
+    stage.put(f"{home}/intrinsics.json", pretty(camera))
+    return Written(counts)
 
 
 def home_of(map_name: str, world: int, clip: int) -> str:
@@ -82,7 +85,7 @@ def _flow(picture: Picture) -> tuple[bytes, int]:
 
 
 def finish(stage: Stage, clips: Sequence[Exported], description: Mapping[str, Any], options: Options) -> None:
-    """Write which environment belongs to which split, the camera, and what the segments mean."""
+    """Write which environment belongs to which split, and what the segments mean."""
     environments = {
         split: sorted({f"{c.map}-{c.world:05d}" for c in clips if c.split == split}) for split in SPLITS
     }
@@ -90,7 +93,6 @@ def finish(stage: Stage, clips: Sequence[Exported], description: Mapping[str, An
     stage.put(
         "seg_label_map.json", pretty({"name_map": {c["name"]: c["id"] for c in description["classes"]}})
     )
-    stage.put("intrinsics.json", pretty({**description["grid"], "K": clips[0].facts["K"]}))
 
 
 FORMAT = Format(
@@ -98,7 +100,7 @@ FORMAT = Format(
     readers="TartanAir V2 (tartanairpy) and what trains on it",
     layout=(
         "`MAP-WORLD/Data_easy/PCLIP/image_lcam_front/N_lcam_front.png`, `depth_lcam_front/`, `flow_lcam_front/`, "
-        "`seg_lcam_front/`, `pose_lcam_front.txt` (NED), `gain.json`; `splits.json`, `intrinsics.json`, "
+        "`seg_lcam_front/`, `pose_lcam_front.txt` (NED), `intrinsics.json`, `gain.json`; `splits.json`, "
         "`seg_label_map.json`"
     ),
     range="depth any; flow -512 to 511.98 px",
@@ -110,9 +112,9 @@ FORMAT = Format(
     bytes_per_pixel=5.5,
     write=write,
     finish=finish,
-    heeds=frozenset({"gain", "gain_K"}),
+    heeds=CHOICES,
     invalid={
-        CLIPPED: "thermal pixels beyond the gain became black or white",
+        **CLIPPING,
         FLOW_OUTSIDE: "pixels whose flow is unknown or beyond 512 px are masked with 100",
     },
 )

@@ -10,7 +10,7 @@ from __future__ import annotations
 from scenegen.foundation.canonical import pretty
 from scenegen_datasets.exports.clip import Clip, Picture
 from scenegen_datasets.exports.format import Format, Written
-from scenegen_datasets.exports.gain import CLIPPED, gain_of
+from scenegen_datasets.exports.gain import CHOICES, CLIPPED, CLIPPING, gain_of
 from scenegen_datasets.exports.integers import FAR, NEAR, add, depth_u16
 from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.png import colour_png, png
@@ -73,9 +73,9 @@ FORMAT = Format(
     needs=("thermal", "depth"),
     bytes_per_pixel=2.5,
     write=write,
-    heeds=frozenset({"gain", "gain_K", "depth_unit_m"}),
+    heeds=CHOICES | {"depth_unit_m"},
     invalid={
-        CLIPPED: "thermal pixels beyond the gain became black or white",
+        **CLIPPING,
         FAR: "pixels with a surface beyond 65535 steps became 0 (no depth); --depth-unit-m widens the range",
         NEAR: "pixels with a surface nearer than half a step became 0 (no depth)",
     },
