@@ -9,22 +9,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scenegen.foundation.errors import InputError
-from scenegen.foundation.strict_yaml import read_mapping
 from scenegen.maps.own_scene.own_scene import describe
-from scenegen_cli.console import note, say, say_json, table
+from scenegen_cli.asking import sources
+from scenegen_cli.console import note, say, say_json
 from scenegen_cli.helping import keys_help
 from scenegen_cli.leaving import TerminatedError
 from scenegen_cli.making import processes
-from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
+from scenegen_cli.parse import HelpShown, parse, split_recipe_flags
 from scenegen_datasets.recipe import Recipe
 from scenegen_datasets.resolve import Source, leaves
 
 if TYPE_CHECKING:
-    from scenegen_trainers.campaign.results import Results
     from scenegen_trainers.campaign.run import Campaign
-    from scenegen_trainers.campaign.summary import Duel, Line, Spread
 
 _MOST_FLIGHTS = 1_000_000
+
+PUT_ASIDE = 3
+"""Exit code of a campaign that finished without some of its batches."""
 
 
 @dataclass(frozen=True)
@@ -114,13 +115,13 @@ def ask(command: Fly, flags: Mapping[str, Any]) -> Campaign:
 
     if not 1 <= command.flights <= _MOST_FLIGHTS:
         raise InputError(f"--flights {command.flights}: ask for 1 to {_MOST_FLIGHTS:,}")
-    sources = _sources(command, flags)
-    recipe = resolve_flights(sources)
+    asked = _sources(command, flags)
+    recipe = resolve_flights(asked)
     for scene in recipe.dataset.scenes.values():
         describe(scene)
     sweep = parse_sweep(command.sweep)
     points = {
-        point.name: resolve_flights([*sources, Source(f"--sweep {point.axis}={point.value}", point.keys)])
+        point.name: resolve_flights([*asked, Source(f"--sweep {point.axis}={point.value}", point.keys)])
         for point in sweep
     }
     find_modules_here()
@@ -149,23 +150,19 @@ def ask(command: Fly, flags: Mapping[str, Any]) -> Campaign:
 
 def _sources(command: Fly, flags: Mapping[str, Any]) -> list[Source]:
     """What was asked for, from the weakest to the strongest."""
-    sources = (
-        [Source(str(command.recipe), read_mapping(command.recipe))] if command.recipe is not None else []
-    )
-    if command.size is not None:
-        width, height = parse_size(command.size)
-        sources.append(Source(f"--size {command.size}", {"camera": {"width_px": width, "height_px": height}}))
-    for flag, value, keys in (
-        ("--hours", command.hours or None, ("campaign", "hours")),
-        ("--netd", command.netd, ("sensor", "netd_mk")),
-        ("--speed", command.speed, ("loop", "cruise_mps")),
-        ("--difficulty", command.difficulty, ("mission", "difficulty")),
-    ):
-        if value is not None:
-            sources.append(Source(flag, {keys[0]: {keys[1]: value}}))
+    short = [
+        Source(flag, {section: {key: value}})
+        for flag, value, section, key in (
+            ("--hours", command.hours or None, "campaign", "hours"),
+            ("--netd", command.netd, "sensor", "netd_mk"),
+            ("--speed", command.speed, "loop", "cruise_mps"),
+            ("--difficulty", command.difficulty, "mission", "difficulty"),
+        )
+        if value is not None
+    ]
     if command.latency is not None:
-        sources.append(Source(f"--latency {command.latency}", {"loop": _latency(command.latency)}))
-    return [*sources, Source("", flags)]
+        short.append(Source(f"--latency {command.latency}", {"loop": _latency(command.latency)}))
+    return sources(command.recipe, flags, command.size, short)
 
 
 def _latency(text: str) -> dict[str, Any]:
@@ -208,6 +205,7 @@ def _plan_in_words(campaign: Campaign) -> str:
 
 
 def _fly(campaign: Campaign, command: Fly, again: Sequence[str]) -> int:
+    from scenegen_cli.flown import in_words
     from scenegen_cli.flying import fly_meter
     from scenegen_trainers.campaign.replay import replay
     from scenegen_trainers.campaign.report.page import write_page
@@ -229,54 +227,11 @@ def _fly(campaign: Campaign, command: Fly, again: Sequence[str]) -> int:
     if command.json:
         say_json({**to_json(campaign, results), "failed": failed, "files": [str(file) for file in files]})
     else:
-        say(_words(campaign, results))
+        say(in_words(campaign, results))
         say("\n".join(f"{file}" for file in files))
     for batch, reason in failed.items():
         note(f"put aside: {batch}: {reason}")
     return PUT_ASIDE if failed else 0
-
-
-PUT_ASIDE = 3
-"""Exit code of a campaign that finished without some of its batches."""
-
-
-def _words(campaign: Campaign, results: Results) -> str:
-    head = ("point", "map", "pilot", "flights", "collisions", "95 %", "goal", "timeout", "pilot failed")
-    rows = [(*head, "progress", "speed", "latency"), *(_row(line) for line in results.lines)]
-    if not campaign.swept:
-        rows = [row[1:] for row in rows]
-    return "\n".join([table(rows), *(_compared(duel, campaign.swept) for duel in results.duels)])
-
-
-def _row(line: Line) -> tuple[str, ...]:
-    hit = line.collision
-    counts = [str(line.ends[kind].count) for kind in ("goal", "timeout", "pilot")]
-    rate = f"{100 * hit.share:.2f} %" if hit.of else "-"
-    return (
-        line.point,
-        line.map,
-        line.pilot,
-        str(line.flights),
-        rate,
-        f"{100 * hit.low:.1f}-{100 * hit.high:.1f}",
-        *counts,
-        _mean(line.progress, 100.0, "%"),
-        _mean(line.speed_mps, 1.0, "m/s"),
-        _mean(line.latency_ms, 1.0, "ms"),
-    )
-
-
-def _mean(spread: Spread, factor: float, unit: str) -> str:
-    return "-" if spread.mean is None else f"{factor * spread.mean:.3g} {unit}"
-
-
-def _compared(duel: Duel, swept: bool) -> str:
-    where = f"{duel.map} {duel.point}" if swept else duel.map
-    paired = duel.paired
-    return (
-        f"{where}: only {duel.first} collided on {paired.first_only} missions, only {duel.second} on "
-        f"{paired.second_only}; McNemar p = {paired.p:.2g}"
-    )
 
 
 def _recipe_help() -> str:

@@ -11,38 +11,51 @@ from collections.abc import Sequence
 from scenegen_cli.console import complain, say
 from scenegen_cli.leaving import INTERRUPTED, TERMINATED, TerminatedError, terminate
 
-COMMANDS = {
-    "demo": "make a few pairs in a minute and show where the pictures are",
-    "render": "make a dataset, resume one, or grow one",
-    "preview": "draw contact sheet and animation of a dataset",
-    "report": "a dataset on one page: pictures, audits, provenance, cost",
-    "audit": "measure what a dataset is like",
-    "view": "look at a dataset in a browser",
-    "info": "what a dataset holds",
-    "status": "how far a dataset is while it is being made",
-    "verify": "check every byte, array and rule of a dataset",
-    "repair": "bring a damaged dataset back to the bytes it had",
-    "clean": "remove from a dataset what is no part of it",
-    "release": "verify a dataset and give it a version",
-    "diff": "compare two datasets, and say which version the change needs",
-    "merge": "join several datasets into one",
-    "export": "write a dataset in a format other tools read",
-    "sense": "look at the stored radiance through another camera",
-    "push": "copy a dataset to a Hub or any storage",
-    "fly": "fly missions in closed loop and count collisions",
-    "train": "teach a depth network on a dataset",
-    "evaluate": "judge a trained network",
-    "table1": "the paper's Table 1 on a dataset",
-    "table2": "the paper's Table 2 in closed loop",
-    "onnx": "export a trained network, and what it costs",
-    "budget": "what depth networks cost a drone",
-    "doctor": "check this machine and say what to do",
-    "maps": "list the kinds of worlds",
-    "classes": "list the semantic classes",
-    "materials": "list the materials",
-    "sensors": "list the cameras",
+GROUPS = {
+    "make": {
+        "demo": "make a few pairs in a minute and show where the pictures are",
+        "render": "make a dataset, resume one, or grow one",
+        "status": "how far a dataset is while it is being made",
+        "sense": "look at the stored radiance through another camera",
+    },
+    "look": {
+        "info": "what a dataset holds",
+        "preview": "draw contact sheet and animation of a dataset",
+        "view": "look at a dataset in a browser",
+        "report": "a dataset on one page: pictures, audits, provenance, cost",
+        "audit": "measure what a dataset is like",
+    },
+    "keep and share": {
+        "verify": "check every byte, array and rule of a dataset",
+        "repair": "bring a damaged dataset back to the bytes it had",
+        "clean": "remove from a dataset what is no part of it",
+        "release": "verify a dataset and give it a version",
+        "diff": "compare two datasets, and say which version the change needs",
+        "merge": "join several datasets into one",
+        "export": "write a dataset in a format other tools read",
+        "push": "copy a dataset to a Hub or any storage",
+    },
+    "learn and fly": {
+        "train": "teach a depth network on a dataset",
+        "evaluate": "judge a trained network",
+        "fly": "fly missions in closed loop and count collisions",
+        "table1": "the paper's Table 1 on a dataset",
+        "table2": "the paper's Table 2 in closed loop",
+        "onnx": "export a trained network, and what it costs",
+        "budget": "what depth networks cost a drone",
+    },
+    "know": {
+        "doctor": "check this machine and say what to do",
+        "maps": "list the kinds of worlds, or look at one",
+        "classes": "list the semantic classes",
+        "materials": "list the materials",
+        "sensors": "list the cameras",
+    },
 }
-"""Subcommands; each is a module of this package with a function ``run(arguments) -> exit code``."""
+"""Subcommands by what they are for; each is a module of this package with ``run(arguments) -> exit code``."""
+
+COMMANDS = {name: meaning for group in GROUPS.values() for name, meaning in group.items()}
+"""All subcommands."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -72,9 +85,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except TerminatedError:
         return TERMINATED
     except BrokenPipeError:
-        os.dup2(
-            os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno()
-        )  # the reader left, e.g. `scenegen ... | head`
+        # The reader left, as in `scenegen ... | head`.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except Exception as error:
         return _explain(error)
@@ -116,14 +128,17 @@ def _explain(error: Exception) -> int:
 
 def _help() -> str:
     width = max(map(len, COMMANDS))
-    lines = "\n".join(f"  {name:<{width}}  {meaning}" for name, meaning in COMMANDS.items())
+    groups = "\n\n".join(
+        "\n".join([f"{title}:", *(f"  {name:<{width}}  {meaning}" for name, meaning in group.items())])
+        for title, group in GROUPS.items()
+    )
     return (
-        "usage: scenegen COMMAND [options]\n\n"
+        "usage: scenegen COMMAND [flags]\n\n"
         "Paired thermal and depth datasets from procedural worlds.\n\n"
-        f"{lines}\n\n"
+        f"{groups}\n\n"
         "'scenegen COMMAND --help' explains one; start with 'scenegen demo'.\n"
-        "exit codes: 0 ok, 1 a check failed, 2 bad input, 3 finished without some clips, 4 no space left, "
-        "130/143 interrupted"
+        "exit codes: 0 ok, 1 a check failed, 2 bad input, 3 finished without some clips or flights, 4 no space left,\n"
+        "            130/143 interrupted"
     )
 
 

@@ -8,16 +8,16 @@ from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.errors import InputError
-from scenegen.foundation.strict_yaml import read_mapping
 from scenegen.maps.own_scene.own_scene import describe
+from scenegen_cli.asking import sources
 from scenegen_cli.console import say, say_json
 from scenegen_cli.helping import keys_help
 from scenegen_cli.making import make, plan_in_words, processes
-from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
+from scenegen_cli.parse import HelpShown, parse, split_recipe_flags
 from scenegen_datasets.licence import checked_licence
 from scenegen_datasets.recipe import Recipe, resolve_recipe, settle_pairs
 from scenegen_datasets.render_job import Job
-from scenegen_datasets.resolve import Source, leaves, merge
+from scenegen_datasets.resolve import leaves, merge
 
 
 @dataclass(frozen=True)
@@ -90,13 +90,8 @@ def ask(file: Path | None, size: str | None, flags: Mapping[str, Any]) -> tuple[
     flags : mapping
         Recipe keys from the command line, nested.
     """
-    sources = [Source(str(file), read_mapping(file))] if file is not None else []
-    if size is not None:
-        width, height = parse_size(size)
-        sources.append(Source(f"--size {size}", {"camera": {"width_px": width, "height_px": height}}))
-    sources.append(Source("", flags))
-    recipe = resolve_recipe(sources)
-    return merge(source.values for source in sources), recipe
+    asked = sources(file, flags, size)
+    return merge(source.values for source in asked), resolve_recipe(asked)
 
 
 def _say_plan(job: Job, command: Render) -> None:

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any, Literal
 
 from scenegen.foundation.errors import InputError
+from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
 from scenegen_cli.parse import HelpShown, parse
-from scenegen_cli.teaching import need_torch, recipe_help, sources, training_flags
+from scenegen_cli.teaching import need_torch, recipe_help, training_flags
 
 
 @dataclass(frozen=True)

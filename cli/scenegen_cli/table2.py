@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scenegen.foundation.errors import InputError, nearest
-from scenegen.foundation.strict_yaml import read_mapping
+from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
 from scenegen_cli.leaving import TerminatedError
 from scenegen_cli.making import processes
-from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
+from scenegen_cli.parse import HelpShown, parse, split_recipe_flags
 from scenegen_cli.teaching import need_torch
 from scenegen_datasets.recipe import Recipe
 from scenegen_datasets.resolve import Source, leaves, merge
@@ -181,15 +181,9 @@ def _taught(command: Table2, school: Mapping[str, Any], out: Path) -> tuple[Entr
 
 def _sources(command: Table2, flags: Mapping[str, Any]) -> tuple[dict[str, Any], list[Source]]:
     """Keys of the trainings, and where those of the flights come from."""
-    sources = (
-        [Source(str(command.recipe), read_mapping(command.recipe))] if command.recipe is not None else []
-    )
-    if command.size is not None:
-        width, height = parse_size(command.size)
-        sources.append(Source(f"--size {command.size}", {"camera": {"width_px": width, "height_px": height}}))
-    sources.append(Source("", flags))
-    school = merge({k: v for k, v in s.values.items() if k in _SCHOOL} for s in sources)
-    return school, [Source(s.name, {k: v for k, v in s.values.items() if k not in _SCHOOL}) for s in sources]
+    asked = sources(command.recipe, flags, command.size)
+    school = merge({k: v for k, v in s.values.items() if k in _SCHOOL} for s in asked)
+    return school, [Source(s.name, {k: v for k, v in s.values.items() if k not in _SCHOOL}) for s in asked]
 
 
 def _fly(job: Table2Job, command: Table2) -> int:

@@ -5,15 +5,13 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.errors import InputError
-from scenegen.foundation.strict_yaml import read_mapping
 from scenegen_cli.console import note, span
 from scenegen_cli.helping import keys_help
 from scenegen_cli.parse import split_recipe_flags
-from scenegen_datasets.resolve import Source, leaves
+from scenegen_datasets.resolve import leaves
 
 SAY_EVERY_S = 15.0
 
@@ -24,12 +22,6 @@ def training_flags(arguments: Sequence[str]) -> tuple[list[str], dict[str, Any]]
 
     keys = [key for key, _, _ in leaves(TrainingRecipe) if key not in ("model", "seed")]
     return split_recipe_flags(arguments, keys)
-
-
-def sources(recipe: Path | None, flags: Mapping[str, Any]) -> list[Source]:
-    """File, then flags."""
-    from_file = [Source(str(recipe), read_mapping(recipe))] if recipe is not None else []
-    return [*from_file, Source("", flags)]
 
 
 def recipe_help() -> str:

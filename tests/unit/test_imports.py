@@ -50,8 +50,8 @@ def loaded_by_command(*arguments: str) -> set[str]:
     return loaded_by(call)
 
 
-def test_help_loads_nothing_but_the_front_door() -> None:
-    assert loaded_by_command("--help") == {"scenegen_cli"}
+def test_help_loads_nothing_but_the_front_door_and_its_foundation() -> None:
+    assert loaded_by_command("--help") == {"scenegen", "scenegen_cli"}
 
 
 @pytest.mark.parametrize("command", ["render", "verify", "info"])
