@@ -180,9 +180,8 @@ def moved(
         `world_from_camera` of the other camera.
     """
     mi, dr = backend.modules()
-    place = step.turn(
-        plane.x, plane.y, mi.Float(1.0)
-    )  # per unit depth, so that sky and surfaces share one formula
+    # Per unit depth, so that sky and surfaces share one formula.
+    place = step.turn(plane.x, plane.y, mi.Float(1.0))
     travel = step.translation + mi.Vector3f(*(dr.dot(axis, shift) for axis in other.column))
     place = dr.select(valid, dr.fma(travel, 1.0 / depth, place), place)
     front = place.z > _IN_FRONT
@@ -190,8 +189,8 @@ def moved(
     u, v = place.x * scale, place.y * scale
     cx, cy = camera.centre_px
     inside = front & (u > -cx) & (u < camera.width_px - cx) & (v > -cy) & (v < camera.height_px - cy)
-    shift = mi.Vector2f(u - plane.x * camera.focal_px, v - plane.y * camera.focal_px)
-    flow = dr.select(front, shift, dr.nan)
+    way = mi.Vector2f(u - plane.x * camera.focal_px, v - plane.y * camera.focal_px)
+    flow = dr.select(front, way, dr.nan)
     back = other.turn(place.x, place.y, place.z)  # from the other camera towards the point, per unit depth
     reach = dr.select(valid, depth * (1.0 - _OCCLUSION_TOLERANCE), dr.largest(mi.Float))
     ray = _as_far_as(other.translation, back, reach)
