@@ -115,6 +115,21 @@ def read_inside(root: Path, path: str, max_bytes: int) -> bytes:
             raise _refusal(path, error) from None
 
 
+def size_inside(root: Path, path: str) -> int:
+    """Size of a plain file [bytes].
+
+    Raises
+    ------
+    DatasetError
+        As `open_inside`.
+    """
+    descriptor = open_inside(root, path)
+    try:
+        return os.fstat(descriptor).st_size
+    finally:
+        os.close(descriptor)
+
+
 def sha256_inside(root: Path, path: str, max_bytes: int = 1 << 30) -> str:
     """SHA-256 of a plain file, which must not be larger: a sparse one may claim to be of any size.
 

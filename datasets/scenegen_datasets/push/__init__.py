@@ -15,6 +15,8 @@ from typing import Any
 from scenegen.foundation import canonical
 from scenegen.foundation.errors import DatasetError, InputError
 from scenegen_datasets.description import read_description
+from scenegen_datasets.index import ROW
+from scenegen_datasets.inside import sha256_inside, size_inside
 from scenegen_datasets.manifest import file_sha256, read_manifest
 from scenegen_datasets.push.target import Item, Target, There, side_by_side, target_at
 from scenegen_datasets.store import DATASET, FOLDERS, LOCK, MANIFEST, read_lock
@@ -24,6 +26,8 @@ __all__ = ["Pushed", "push"]
 _LAST = (MANIFEST, DATASET)
 _BATCH_FILES, _BATCH_BYTES = 64, 1 << 30
 _MAX_LOCK_BYTES = 64 << 20
+_MOST_BYTES = 1 << 30
+"""No file but the index and the shards is larger, whose sizes are told: a sparse one may claim any."""
 
 Told = Callable[[int, int], None]
 
@@ -100,7 +104,7 @@ def push(
         done = size - sum(item.size for item in missing)
         for batch in _batches(missing):
             for item in batch:
-                if file_sha256(root / item.path) != item.sha256:
+                if sha256_inside(root, item.path, item.size) != item.sha256:
                     raise DatasetError(f"{root / item.path}: damaged; run `scenegen repair`, then push again")
             there.send(root, batch)
             done += sum(item.size for item in batch)
@@ -124,18 +128,20 @@ def _items(root: Path) -> list[Item]:
     read_lock(root)
     if not (root / DATASET).is_file():
         raise InputError(f"{root} is not finished; finish it with the same render command, then push it")
-    read_description(root / DATASET)
+    counts = read_description(root / DATASET)["counts"]
     sums = read_manifest(root / MANIFEST)
     if sums.get(DATASET) != file_sha256(root / DATASET):
         raise DatasetError(f"{root / MANIFEST}: does not belong to {DATASET}; run `scenegen verify`")
     sums[MANIFEST] = file_sha256(root / MANIFEST)
     names = [LOCK, *sorted(set(sums) - {LOCK, *_LAST}), *_LAST]
-    items = []
-    for name in names:
-        file = root / name
-        if file.is_symlink() or not file.is_file():
-            raise DatasetError(f"{file}: missing; run `scenegen repair`")
-        items.append(Item(name, file.stat().st_size, sums[name], file))
+    try:
+        items = [Item(name, size_inside(root, name), sums[name], root / name) for name in names]
+    except DatasetError as error:
+        raise DatasetError(f"{root}/{error}; run `scenegen repair`") from None
+    held = sum(item.size for item in items if item.path.startswith("shards/"))
+    largest = max((item.size for item in items if not item.path.startswith("shards/")), default=0)
+    if held != counts["shard_bytes"] or largest > max(_MOST_BYTES, counts["frames"] * ROW.itemsize + 4096):
+        raise DatasetError(f"{root}: its files have other sizes than {DATASET} says; run `scenegen verify`")
     return items
 
 

@@ -16,6 +16,7 @@ from hostile.members import FOREIGN, foreign_header
 from scenegen.foundation.errors import DatasetError
 from scenegen_datasets import PairDataset, tar
 from scenegen_datasets.manifest import listable, read_manifest
+from scenegen_datasets.push import push
 from scenegen_datasets.receipt import read_receipt
 from scenegen_datasets.seal import sealed, unsealed
 from scenegen_datasets.source import open_source
@@ -147,3 +148,20 @@ def test_an_index_of_another_kind_is_never_parsed(dataset: Path, found: Found, s
     assert "not an index of 24 frames of this version" in found(dataset, quick=True)["index.npy"]
     with pytest.raises(DatasetError, match="not an index"):
         PairDataset(dataset)
+
+
+@pytest.mark.parametrize("name", ["shards/train/city-00000/000.tar", "README.md"])
+def test_a_terabyte_of_nothing_is_not_pushed(dataset: Path, tmp_path: Path, name: str) -> None:
+    """Reading it to the end would take an hour."""
+    with (dataset / name).open("r+b") as file:
+        file.truncate(1 << 40)
+    with pytest.raises(DatasetError, match="other sizes than"):
+        push(dataset, f"file://{tmp_path}/there")
+    assert not (tmp_path / "there").exists()
+
+
+def test_what_lies_behind_a_link_is_not_pushed(dataset: Path, tmp_path: Path) -> None:
+    (dataset / "shards/val").rename(tmp_path / "elsewhere")
+    (dataset / "shards/val").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(DatasetError, match=r"missing \(or not a plain file\); run `scenegen repair`"):
+        push(dataset, f"file://{tmp_path}/there")
