@@ -100,6 +100,7 @@ def test_two_trainings_do_not_share_a_directory(toy: Path, tmp_path: Path) -> No
     [
         (Machine(devices=0), "--devices 0: at least 1"),
         (Machine(threads=0), "--threads 0: at least 1"),
+        (Machine(devices=3), "a batch of 4 cannot be shared evenly by 3 devices"),
         (Machine("gpu"), "no GPU that torch can use"),
     ],
 )

@@ -87,6 +87,11 @@ def train(
         If `out` holds another training or one that still runs, the dataset does not fit, or the losses stop being
         numbers.
     """
+    if recipe.training.batch % max(machine.devices, 1):
+        raise InputError(
+            f"a batch of {recipe.training.batch} cannot be shared evenly by {machine.devices} devices; "
+            "change --training.batch or --devices"
+        )
     fabric = machine.fabric(out)
     make_directory(out)
     with DirectoryLock(out) if is_first_process() else nullcontext():
@@ -129,28 +134,31 @@ class _School:
             first = int(state["step"])
         log = Log(self.out, first)
         rank, count = self.fabric.global_rank, self.fabric.world_size
-        if knobs.batch % count:
-            raise InputError(f"a batch of {knobs.batch} cannot be shared evenly by {count} devices")
         for step, batch in enumerate(self._batches(first, slice(rank, None, count)), first):
             torch.manual_seed(_number(self.recipe.seed, "step", step, rank))
             rate = self.learner.set_rate(_rate_share(step, knobs.steps, knobs.decay_from))
             losses = self.learner.step(self.fabric.to_device(batch))
-            done = step + 1
-            last = done == knobs.steps
-            seen: dict[str, float] = {}
-            if last or done % knobs.log == 0:
-                seen = self._look_at(losses, done)
-                log.add(done, {"rate": rate, **seen})
-                self.fabric.log_dict(seen, done)
-            if self.fabric.is_global_zero and (last or done % knobs.judge == 0):
-                log.add(done, self._examine(done))
-            if self.fabric.is_global_zero and (last or done % knobs.keep == 0):
-                log.write()
-                if last:
-                    self._graduate(done)
-                write_state(self.out, self.identity, done, {} if last else self.learner.state())
-            watch(Taught(done, knobs.steps, seen))
+            watch(Taught(step + 1, knobs.steps, self._after(step + 1, rate, losses, log)))
         self.fabric.barrier()
+
+    def _after(self, done: int, rate: float, losses: Any, log: Log) -> dict[str, float]:
+        """Log, judge and save where it is time; returns the losses if they were looked at."""
+        knobs, first, seen = self.recipe.training, self.fabric.is_global_zero, {}
+        last = done == knobs.steps
+        if last or done % knobs.log == 0:
+            seen = self._look_at(losses, done)
+            log.add(done, {"rate": rate, **seen})
+            self.fabric.log_dict(seen, done)
+        if first and (last or done % knobs.judge == 0):
+            scores = self._examine(done)
+            log.add(done, scores)
+            self.fabric.log_dict(scores, done)
+        if first and (last or done % knobs.keep == 0):
+            log.write()
+            if last:
+                self._graduate(done)
+            write_state(self.out, self.identity, done, {} if last else self.learner.state())
+        return seen
 
     def _batches(self, first: int, share: slice) -> Iterable[Batch]:
         knobs = self.recipe.training
