@@ -1,0 +1,77 @@
+"""One flipped bit of what nothing else repeats is found again, wherever it is; anything more is left alone."""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+from scenegen_datasets.repair.heal import IRREPLACEABLE, heal, unflipped
+from scenegen_datasets.verify import verify
+
+BYTES = st.binary(min_size=1, max_size=200)
+
+
+def flipped(data: bytes, bit: int) -> bytes:
+    """The same with one bit changed."""
+    changed = bytearray(data)
+    changed[bit // 8] ^= 1 << (bit % 8)
+    return bytes(changed)
+
+
+@given(BYTES, st.data())
+@settings(max_examples=150, deadline=None)
+def test_one_bit_is_found_wherever_it_is(data: bytes, draw: st.DataObject) -> None:
+    bit = draw.draw(st.integers(0, 8 * len(data) - 1))
+    assert unflipped(flipped(data, bit), hashlib.sha256(data).hexdigest()) == data
+
+
+@given(BYTES, st.data())
+@settings(max_examples=60, deadline=None)
+def test_two_bits_are_not(data: bytes, draw: st.DataObject) -> None:
+    one, two = (draw.draw(st.integers(0, 8 * len(data) - 1)) for _ in range(2))
+    assume(one != two)
+    assert unflipped(flipped(flipped(data, one), two), hashlib.sha256(data).hexdigest()) is None
+
+
+@given(BYTES, BYTES)
+@settings(max_examples=60, deadline=None)
+def test_another_length_is_not(data: bytes, more: bytes) -> None:
+    assert unflipped(data + more, hashlib.sha256(data).hexdigest()) is None
+
+
+@pytest.mark.parametrize("name", ["recipe.yaml", "recipe.lock.json"])
+@given(where=st.floats(0, 1, exclude_max=True))
+@settings(max_examples=6, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_a_file_of_a_dataset_heals_and_nothing_else_changes(
+    pristine: Path, tmp_path: Path, name: str, where: float
+) -> None:
+    assert name in IRREPLACEABLE
+    shutil.rmtree(tmp_path / "copy", ignore_errors=True)
+    root = shutil.copytree(pristine, tmp_path / "copy")
+    data = (root / name).read_bytes()
+    (root / name).write_bytes(flipped(data, int(where * 8 * len(data))))
+    assert heal(root) == (name,)
+    assert (root / name).read_bytes() == data and heal(root) == ()
+    assert verify(root, quick=True).ok
+
+
+def test_what_is_damaged_beyond_that_is_left_as_it_is(dataset: Path) -> None:
+    path = dataset / "recipe.lock.json"
+    hurt = flipped(flipped(path.read_bytes(), 9), 99)
+    path.write_bytes(hurt)
+    assert heal(dataset) == () and path.read_bytes() == hurt
+
+
+def test_a_large_file_is_not_searched_for_hours(dataset: Path) -> None:
+    """The search grows with the square of the size; and a link is not followed into a file that could be hurt."""
+    (dataset / "recipe.yaml").write_bytes(b"#" * (1 << 17))
+    lock = dataset / "recipe.lock.json"
+    lock.replace(dataset / "elsewhere")
+    lock.symlink_to(dataset / "elsewhere")
+    assert heal(dataset) == ()
+    assert lock.is_symlink()
