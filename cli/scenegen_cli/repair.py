@@ -22,7 +22,8 @@ SHOWN = 20
 class Repair:
     """Verify a dataset and put right what is wrong: render broken or missing clips again, derive the rest anew.
 
-    What is sound is not touched. Exits with 1 if something is still wrong.
+    What is sound is not touched. Merged and sensed datasets need neither their parts nor their source. Exits with 1 if
+    something is still wrong.
     """
 
     dataset: Annotated[Path, tyro.conf.Positional]
@@ -65,6 +66,10 @@ def _tell(done: Repaired) -> None:
         note(f"not repaired: {clip}: {reason}")
     for finding in done.after.findings[:SHOWN]:
         note(f"still: {finding}")
-    state = "sound again" if done.after.ok else f"{len(done.after.findings)} findings are left"
-    made = f", {len(done.remade)} clips rendered again" if done.remade else ""
-    say(f"{state}: {len(done.before.findings)} findings before{made}")
+    state = "sound again" if done.after.ok else f"{_counted(len(done.after.findings), 'finding')} left"
+    made = f", {_counted(len(done.remade), 'clip')} rendered again" if done.remade else ""
+    say(f"{state}: {_counted(len(done.before.findings), 'finding')} before{made}")
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"

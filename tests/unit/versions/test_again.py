@@ -23,6 +23,7 @@ from scenegen_datasets.repair.repair import repair
 from scenegen_datasets.sensing.run import sense_dataset
 from scenegen_datasets.store import read_lock
 from scenegen_datasets.verify import verify
+from scenegen_datasets.verify.rerender import rerender
 from scenegen_datasets.versions.merge import merge
 
 PARTS = (("a", "city", 0), ("b", "field", 0), ("c", "city", 7))
@@ -72,6 +73,19 @@ def test_every_kind_of_damage_to_a_merged_dataset_is_repaired_to_the_byte(
     assert done.remade == ("city-00000-000", "city-00000-001", "city-07001-001")
     assert studio == ["city-00000-000", "city-00000-001", "city-00001-001"], "by their own names"
     assert fakes.tree(root) == fakes.tree(whole)
+
+
+def test_frames_of_a_merged_dataset_are_rendered_again_and_compared(
+    fakes: ModuleType, whole: Path, studio: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = fakes.tree(whole)
+    found = rerender(whole, 20, 1)
+    assert (found.findings, found.identical, found.same_software) == ((), 20, True)
+    assert {key[:8] for key in found.frames} == {"city-000", "city-070", "field-00"}
+    assert fakes.tree(whole) == before
+    meta = fakes.meta
+    monkeypatch.setattr(fakes, "meta", lambda k: meta(k + 1))
+    assert rerender(whole, 2, 1).findings
 
 
 def test_a_clip_that_comes_out_otherwise_does_not_take_the_place(
