@@ -34,6 +34,9 @@ SCENE_SEMANTICS = 4
 MAX_PAIRS = 100_000_000
 """More pairs than any disk of today holds."""
 
+MAX_CLIPS = 1_000_000
+"""A plan is held in memory, and a lock from elsewhere may ask for any."""
+
 _LAYER_KNOBS = {"flow_back": "backward_flow", "covisible_back": "backward_flow", "normal": "normals"}
 
 
@@ -186,24 +189,30 @@ def settle_pairs(recipe: Recipe, pairs: int) -> tuple[Recipe, int]:
     Raises
     ------
     InputError
-        If `pairs` is not between 1 and 10^8, or more than there are numbers for worlds.
+        If `pairs` is not between 1 and 10^8, or asks for more worlds or clips than a dataset can hold.
     """
     if not 1 <= pairs <= MAX_PAIRS:
         raise InputError(f"--pairs {pairs}: ask for 1 to {MAX_PAIRS:,} pairs")
     if pairs < recipe.pairs_per_clip:
         return recipe.model_copy(update={"pairs_per_clip": pairs}), pairs
     whole = -(-pairs // recipe.pairs_per_clip) * recipe.pairs_per_clip
-    refuse_too_many_worlds(recipe, whole)
+    refuse_too_large_a_plan(recipe, whole)
     return recipe, whole
 
 
-def refuse_too_many_worlds(recipe: Recipe, pairs: int) -> None:
-    """Stop where a plan of so many pairs needs worlds beyond the largest number.
+def refuse_too_large_a_plan(recipe: Recipe, pairs: int) -> None:
+    """Stop where a plan of so many pairs needs worlds beyond the largest number, or more clips than memory should hold.
 
     Raises
     ------
     InputError
     """
+    clips = -(-pairs // recipe.pairs_per_clip)
+    if clips > MAX_CLIPS:
+        raise InputError(
+            f"{pairs:,} pairs are {clips:,} clips of {recipe.pairs_per_clip}, and a dataset holds at most "
+            f"{MAX_CLIPS:,}; raise --pairs-per-clip"
+        )
     last = last_world(
         len(recipe.map), recipe.clips_per_world, recipe.pairs_per_clip, pairs, recipe.first_world
     )

@@ -13,7 +13,7 @@ from scenegen.foundation.strict_yaml import read_mapping
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.lock import VOLATILE_KEYS, fingerprint, recipe_id
 from scenegen_datasets.probe import render_fingerprint
-from scenegen_datasets.recipe import SCENE_SEMANTICS, Recipe, refuse_too_many_worlds, resolve_recipe
+from scenegen_datasets.recipe import SCENE_SEMANTICS, Recipe, refuse_too_large_a_plan, resolve_recipe
 from scenegen_datasets.render_job import Job
 from scenegen_datasets.resolve import Source
 from scenegen_datasets.run import Progress, make_clips
@@ -91,7 +91,7 @@ def job_of(
         raise InputError(
             f"{root / LOCK}: does not say how many pairs the dataset has; restore it from a copy"
         )
-    refuse_too_many_worlds(recipe, pairs)
+    refuse_too_large_a_plan(recipe, pairs)
     return Job(recipe=recipe, pairs=pairs, root=into or root, asked={}, processes=processes)
 
 

@@ -145,8 +145,12 @@ def test_worlds_beyond_the_largest_number_are_refused() -> None:
     assert settle_pairs(recipe, 512) == (recipe, 512)
     with pytest.raises(InputError, match=r"576 pairs need worlds up to number 100,000, .*--clips-per-world"):
         settle_pairs(recipe, 513)
-    with pytest.raises(InputError, match="need worlds up to number 195,312"):
-        settle_pairs(resolve_recipe([]), 100_000_000)
+    with pytest.raises(InputError, match="need worlds up to number 124,999"):
+        settle_pairs(resolve_recipe([]), 64_000_000)
+    with pytest.raises(
+        InputError, match=r"2,000,000 pairs are 2,000,000 clips of 1, .* raise --pairs-per-clip"
+    ):
+        settle_pairs(resolve_recipe([Source("", {"pairs_per_clip": 1})]), 2_000_000)
 
 
 def test_the_first_world_is_part_of_a_recipe_if_it_is_not_the_first() -> None:
