@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from scenegen_cli.console import say, say_json
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 if TYPE_CHECKING:
     from scenegen_datasets.audits.run import Audits
@@ -31,10 +31,7 @@ class Audit:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Audit, "audit", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Audit, "audit", arguments)
     from scenegen_cli.progress import Meter
     from scenegen_datasets.audits.run import as_json, audit
     from scenegen_datasets.source import open_source

@@ -11,7 +11,7 @@ import tyro
 
 from scenegen.foundation.errors import InputError
 from scenegen_cli.console import note, say, say_json, table
-from scenegen_cli.parse import HelpShown, parse, parse_size
+from scenegen_cli.parse import parse, parse_size
 from scenegen_cli.teaching import need_torch
 
 
@@ -29,7 +29,7 @@ class Budget:
     size: str = "256x256"
     """Frames WIDTHxHEIGHT of networks that are not given."""
     threads: tuple[int, ...] = (1,)
-    """Of torch and onnxruntime; several measure each."""
+    """Threads of torch and onnxruntime; with several numbers, each is measured."""
     repeats: int = 20
     """Runs of each; the median counts."""
     markdown: bool = False
@@ -40,10 +40,7 @@ class Budget:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Budget, "budget", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Budget, "budget", arguments)
     if not command.threads or min(*command.threads, command.repeats) < 1:
         raise InputError("--threads and --repeats must be at least 1")
     width, height = parse_size(command.size)

@@ -10,7 +10,7 @@ from typing import Annotated
 import tyro
 
 from scenegen_cli.console import say, say_json
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 
 @dataclass(frozen=True)
@@ -30,10 +30,7 @@ class Clean:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Clean, "clean", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Clean, "clean", arguments)
     from scenegen.foundation.printable import printable
     from scenegen_datasets.repair.clean import clean
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from scenegen_cli.console import say
 from scenegen_cli.making import make, pictures, processes
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 from scenegen_cli.render import ask
 from scenegen_datasets.render_job import Job
 
@@ -27,10 +27,7 @@ class Demo:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Demo, "demo", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Demo, "demo", arguments)
     asked, recipe = ask(None, None, {"clips_per_world": CLIPS, "pairs_per_clip": PAIRS_PER_CLIP})
     job = Job(
         recipe=recipe,

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from scenegen_cli.console import say, say_json, size, table
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 if TYPE_CHECKING:
     from scenegen_datasets.versions.diff import Difference
@@ -39,10 +39,7 @@ class Diff:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Diff, "diff", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Diff, "diff", arguments)
     from scenegen.foundation.errors import DatasetError, InputError
     from scenegen_datasets.versions.diff import diff
 

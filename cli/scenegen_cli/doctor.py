@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from scenegen_cli.console import say, say_json, table
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 
 @dataclass(frozen=True)
@@ -21,10 +21,7 @@ class Doctor:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Doctor, "doctor", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Doctor, "doctor", arguments)
     from scenegen_render.doctor import self_check
 
     report = self_check()

@@ -11,7 +11,7 @@ import tyro
 
 from scenegen.foundation.errors import InputError
 from scenegen_cli.console import note, say, say_json, table
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 from scenegen_cli.teaching import Steps, need_torch
 
 
@@ -24,25 +24,22 @@ class Evaluate:
     dataset: Annotated[Path, tyro.conf.Positional]
     """Directory of a finished dataset, of the camera the network was trained on."""
     split: Literal["train", "val", "test"] = "test"
-    """Judged on."""
+    """Which part of the dataset it is judged on."""
     pairs: int = 0
-    """So many, evenly spread; 0 takes all."""
+    """Pairs it is judged on, evenly spread; 0 takes all."""
     out: Path | None = None
     """Directory of the report and the pictures; by default evaluation-SPLIT beside the checkpoint."""
     accelerator: Literal["cpu", "gpu"] = "cpu"
-    """On what."""
+    """Where it runs."""
     threads: int = 1
-    """Of the CPU."""
+    """Threads of the CPU."""
     json: bool = False
     """Report as JSON."""
 
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Evaluate, "evaluate", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Evaluate, "evaluate", arguments)
     need_torch()
     from scenegen_datasets.place import make_directory
     from scenegen_trainers.evaluation.evaluate import evaluate

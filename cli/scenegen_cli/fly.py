@@ -15,7 +15,7 @@ from scenegen_cli.console import note, say, say_json
 from scenegen_cli.helping import keys_help
 from scenegen_cli.leaving import TerminatedError
 from scenegen_cli.making import processes
-from scenegen_cli.parse import HelpShown, parse, split_recipe_flags
+from scenegen_cli.parse import parse, split_recipe_flags
 from scenegen_datasets.recipe import Recipe
 from scenegen_datasets.resolve import Source, leaves
 
@@ -78,11 +78,8 @@ def run(arguments: Sequence[str]) -> int:
     from scenegen_trainers.campaign.recipe import flight_keys
 
     keys = [key for key, _, _ in (*leaves(Recipe), *flight_keys())]
-    try:
-        own, flags = split_recipe_flags(arguments, keys)
-        command = parse(Fly, "fly", own, _recipe_help())
-    except HelpShown:
-        return 0
+    own, flags = split_recipe_flags(arguments, keys)
+    command = parse(Fly, "fly", own, _recipe_help())
     campaign = ask(command, flags)
     again = ["scenegen", "fly", *arguments, *([] if command.out else ["--out", str(campaign.root)])]
     if command.dry_run:

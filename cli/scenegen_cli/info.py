@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from scenegen_cli.console import say, say_json, size, table
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 if TYPE_CHECKING:
     from scenegen_datasets.info import DatasetInfo
@@ -30,10 +30,7 @@ class Info:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Info, "info", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Info, "info", arguments)
     from scenegen_datasets.info import info
 
     found = info(command.dataset)

@@ -8,6 +8,10 @@ INTERRUPTED, TERMINATED = 130, 143
 """Exit codes after SIGINT and SIGTERM."""
 
 
+class HelpShown(Exception):  # noqa: N818 - not an error
+    """Help was asked for and printed; there is nothing else to do."""
+
+
 class TerminatedError(BaseException):
     """SIGTERM was received. Like KeyboardInterrupt, nothing but the front door catches it."""
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from scenegen_cli.console import say, say_json, table
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 
 @dataclass(frozen=True)
@@ -26,10 +26,7 @@ def show(
     columns: Sequence[str],
 ) -> int:
     """Print rows as a table of some columns, or all of them as JSON; returns the exit code."""
-    try:
-        command = parse(kind, name, arguments)
-    except HelpShown:
-        return 0
+    command = parse(kind, name, arguments)
     found = rows()
     if command.json:
         say_json([dict(row) for row in found])

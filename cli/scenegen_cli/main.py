@@ -9,7 +9,7 @@ import sys
 from collections.abc import Sequence
 
 from scenegen_cli.console import complain, say
-from scenegen_cli.leaving import INTERRUPTED, TERMINATED, TerminatedError, terminate
+from scenegen_cli.leaving import INTERRUPTED, TERMINATED, HelpShown, TerminatedError, terminate
 
 GROUPS = {
     "make": {
@@ -80,6 +80,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     before = signal.signal(signal.SIGTERM, terminate)
     try:
         return _run(words)
+    except HelpShown:
+        return 0
     except KeyboardInterrupt:
         return INTERRUPTED
     except TerminatedError:

@@ -11,7 +11,7 @@ import tyro
 
 from scenegen.foundation.errors import InputError
 from scenegen_cli.console import say, say_json, table
-from scenegen_cli.parse import HelpShown, parse, split_recipe_flags
+from scenegen_cli.parse import parse, split_recipe_flags
 from scenegen_datasets.recipe import Recipe
 from scenegen_datasets.resolve import leaves
 
@@ -41,11 +41,8 @@ class Maps:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        own, flags = split_recipe_flags(arguments, [key for key, _, _ in leaves(Recipe)])
-        command = parse(Maps, "maps", own)
-    except HelpShown:
-        return 0
+    own, flags = split_recipe_flags(arguments, [key for key, _, _ in leaves(Recipe)])
+    command = parse(Maps, "maps", own)
     looks = command.preview is not None or command.export is not None
     if not command.map:
         if looks:

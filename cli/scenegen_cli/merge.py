@@ -10,7 +10,7 @@ from typing import Annotated
 import tyro
 
 from scenegen_cli.console import note, say, say_json, size
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,8 @@ class Merge:
     """Directories of two or more finished datasets."""
     copy: bool = False
     """Copy shards; by default they are hard links, which take no space."""
-    verify: bool = True
-    """Verify the whole at the end."""
+    no_verify: bool = False
+    """Do not verify the whole at the end."""
     jobs: int = 0
     """Processes that verify; 0 is one per CPU."""
     json: bool = False
@@ -37,10 +37,7 @@ class Merge:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Merge, "merge", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Merge, "merge", arguments)
     from scenegen_cli.making import processes
     from scenegen_cli.progress import Meter
     from scenegen_datasets.verify import verify
@@ -50,7 +47,7 @@ def run(arguments: Sequence[str]) -> int:
     merged = merge(command.out, command.parts, copy=command.copy)
     found = merged.info
     with Meter(quiet=command.json) as meter:
-        report = verify(command.out, workers, progress=meter.verified) if command.verify else None
+        report = None if command.no_verify else verify(command.out, workers, progress=meter.verified)
     if command.json:
         findings = [] if report is None else [asdict(finding) for finding in report.findings]
         facts = {

@@ -12,7 +12,7 @@ import tyro
 from scenegen.foundation.atomic import write_atomic
 from scenegen.foundation.errors import InputError
 from scenegen_cli.console import note, say, say_json, table
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 from scenegen_cli.teaching import need_torch
 
 
@@ -23,7 +23,7 @@ class Onnx:
     checkpoints: Annotated[tuple[Path, ...], tyro.conf.Positional]
     """One model.pt of `scenegen train`, or several; each graph is written beside its checkpoint."""
     threads: int = 1
-    """Of torch and onnxruntime."""
+    """Threads of torch and onnxruntime."""
     repeats: int = 20
     """Runs of each; the median counts."""
     json: bool = False
@@ -32,10 +32,7 @@ class Onnx:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Onnx, "onnx", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Onnx, "onnx", arguments)
     if not command.checkpoints or command.threads < 1 or command.repeats < 1:
         raise InputError("name at least one checkpoint, one thread and one repeat")
     need_torch()

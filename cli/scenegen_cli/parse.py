@@ -19,6 +19,7 @@ from scenegen.foundation.errors import InputError, nearest
 from scenegen.foundation.strict_yaml import parse_mapping
 from scenegen_cli.console import say
 from scenegen_cli.helping import command_help
+from scenegen_cli.leaving import HelpShown
 from scenegen_cli.parameters import Parameter, parameters
 
 Command = TypeVar("Command")
@@ -31,10 +32,6 @@ _IN_OUR_WORDS = (
     (re.compile(r"could not convert string to float: (.+)"), r"\1 is not a number"),
     (re.compile(r"Could not find valid parse for arguments: \[(.+)\]"), r"\1 cannot be read"),
 )
-
-
-class HelpShown(Exception):  # noqa: N818 - not an error
-    """Help was asked for and printed."""
 
 
 def parse(command: type[Command], name: str, arguments: Sequence[str], more_help: str = "") -> Command:

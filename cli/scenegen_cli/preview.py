@@ -11,7 +11,7 @@ import tyro
 
 from scenegen.foundation.errors import InputError
 from scenegen_cli.console import say
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 
 @dataclass(frozen=True)
@@ -26,10 +26,7 @@ class Preview:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Preview, "preview", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Preview, "preview", arguments)
     from scenegen_datasets.info import info
     from scenegen_datasets.pictures.preview import FLIGHT, SHEET, draw_preview, write_preview
 

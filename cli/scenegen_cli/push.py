@@ -10,7 +10,7 @@ from typing import Annotated
 import tyro
 
 from scenegen_cli.console import say, say_json, size
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 
 @dataclass(frozen=True)
@@ -25,9 +25,9 @@ class Push:
     dataset: Annotated[Path, tyro.conf.Positional]
     """Directory of the dataset."""
     url: Annotated[str, tyro.conf.Positional]
-    """Where to."""
+    """Where to: a URL."""
     private: bool = False
-    """Of a repository on the Hub that is made by this."""
+    """Make a new repository on the Hub private."""
     quick: bool = False
     """Compare sizes only, where contents would have to be read back."""
     json: bool = False
@@ -36,10 +36,7 @@ class Push:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Push, "push", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Push, "push", arguments)
     from scenegen_cli.progress import Meter
     from scenegen_datasets.push import push
 

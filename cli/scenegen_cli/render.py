@@ -13,7 +13,7 @@ from scenegen_cli.asking import sources
 from scenegen_cli.console import say, say_json
 from scenegen_cli.helping import keys_help
 from scenegen_cli.making import make, plan_in_words, processes
-from scenegen_cli.parse import HelpShown, parse, split_recipe_flags
+from scenegen_cli.parse import parse, split_recipe_flags
 from scenegen_datasets.licence import checked_licence
 from scenegen_datasets.recipe import Recipe, resolve_recipe, settle_pairs
 from scenegen_datasets.render_job import Job
@@ -48,11 +48,8 @@ class Render:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        own, flags = split_recipe_flags(arguments, [key for key, _, _ in leaves(Recipe)])
-        command = parse(Render, "render", own, _recipe_help())
-    except HelpShown:
-        return 0
+    own, flags = split_recipe_flags(arguments, [key for key, _, _ in leaves(Recipe)])
+    command = parse(Render, "render", own, _recipe_help())
     asked, recipe = ask(command.recipe, command.size, flags)
     if not command.pairs:
         raise InputError("--pairs is missing or 0: say how many pairs to make, such as --pairs 512")

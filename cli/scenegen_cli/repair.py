@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from scenegen_cli.console import note, say, say_json
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 if TYPE_CHECKING:
     from scenegen_datasets.repair.repair import Repaired
@@ -36,10 +36,7 @@ class Repair:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Repair, "repair", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Repair, "repair", arguments)
     from scenegen_cli.making import processes
     from scenegen_cli.progress import Meter
     from scenegen_datasets.repair.repair import repair

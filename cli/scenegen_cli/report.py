@@ -11,7 +11,7 @@ import tyro
 
 from scenegen_cli.audit import say_verdicts
 from scenegen_cli.console import say, say_json, size
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 
 @dataclass(frozen=True)
@@ -31,10 +31,7 @@ class Report:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Report, "report", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Report, "report", arguments)
     from scenegen_cli.progress import Meter
     from scenegen_datasets.audits.run import as_json
     from scenegen_datasets.report.page import write_report

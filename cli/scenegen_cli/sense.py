@@ -11,7 +11,7 @@ import tyro
 
 from scenegen.foundation.errors import InputError
 from scenegen_cli.console import say, say_json, size
-from scenegen_cli.parse import HelpShown, parse, parse_size, split_recipe_flags
+from scenegen_cli.parse import parse, parse_size, split_recipe_flags
 from scenegen_datasets.resolve import leaves
 
 
@@ -30,7 +30,7 @@ class Sense:
     size: str | None = None
     """Image size WIDTHxHEIGHT: blocks of stored pixels become one."""
     seed: int | None = None
-    """Of the new noise; by default that of the dataset's recipe."""
+    """Seed of the new noise; by default that of the dataset's recipe."""
     jobs: int = 0
     """Worker processes; 0 is one per CPU."""
     json: bool = False
@@ -42,11 +42,8 @@ def run(arguments: Sequence[str]) -> int:
     from scenegen_datasets.sensing.camera import CameraKeys
 
     keys = [key for key, _, _ in leaves(CameraKeys)]
-    try:
-        own, flags = split_recipe_flags(arguments, keys)
-        command = parse(Sense, "sense", own)
-    except HelpShown:
-        return 0
+    own, flags = split_recipe_flags(arguments, keys)
+    command = parse(Sense, "sense", own)
     from scenegen_cli.making import processes
     from scenegen_cli.progress import Meter
     from scenegen_datasets.sensing.run import sense_dataset

@@ -14,7 +14,7 @@ import tyro
 from scenegen.foundation.canonical import parse as parse_json
 from scenegen.foundation.errors import DatasetError
 from scenegen_cli.console import say, say_json, table
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 _TAIL_BYTES = 1 << 20
 _MOST_HOLDER_BYTES = 4096
@@ -32,10 +32,7 @@ class Status:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Status, "status", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Status, "status", arguments)
     facts = _facts(command.dataset)
     if command.json:
         say_json(facts)

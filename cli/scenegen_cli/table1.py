@@ -10,7 +10,7 @@ from typing import Any, Literal
 from scenegen.foundation.errors import InputError
 from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 from scenegen_cli.teaching import need_torch, recipe_help, training_flags
 
 
@@ -31,7 +31,7 @@ class Table1:
     first_seed: int = 0
     """Smallest seed."""
     split: Literal["val", "test"] = "test"
-    """Judged on."""
+    """Which part of the dataset the rows are judged on."""
     out: Path | None = None
     """Directory of runs and pages; by default table1-PROFILE here."""
     recipe: Path | None = None
@@ -39,20 +39,17 @@ class Table1:
     jobs: int = 0
     """Trainings side by side, one thread each; 0 is one per CPU, or one on a GPU."""
     accelerator: Literal["cpu", "gpu"] = "cpu"
-    """On what."""
+    """Where it runs."""
     precision: Literal["32-true", "bf16-mixed", "16-mixed"] = "32-true"
-    """Arithmetic."""
+    """Numbers they compute with."""
     json: bool = False
     """Report as JSON."""
 
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        own, flags = training_flags(arguments)
-        command = parse(Table1, "table1", own, recipe_help())
-    except HelpShown:
-        return 0
+    own, flags = training_flags(arguments)
+    command = parse(Table1, "table1", own, recipe_help())
     if command.data is None:
         raise InputError("--data is missing: name the directory of a dataset that `scenegen render` made")
     if command.seeds < 1 or command.first_seed < 0:

@@ -13,7 +13,7 @@ from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
 from scenegen_cli.leaving import TerminatedError
 from scenegen_cli.making import processes
-from scenegen_cli.parse import HelpShown, parse, split_recipe_flags
+from scenegen_cli.parse import parse, split_recipe_flags
 from scenegen_cli.teaching import need_torch
 from scenegen_datasets.recipe import Recipe
 from scenegen_datasets.resolve import Source, leaves, merge
@@ -52,7 +52,7 @@ class Table2:
     planner: str = "waypoint"
     """Turns depth into velocities: waypoint, five_section, straight, or module:attribute."""
     training_seed: int = 0
-    """Of the trainings; --seed is that of the worlds."""
+    """Seed of the trainings; --seed is that of the worlds."""
     out: Path | None = None
     """Directory of runs, flights and pages; by default table2-PROFILE here."""
     recipe: Path | None = None
@@ -73,11 +73,8 @@ def run(arguments: Sequence[str]) -> int:
     from scenegen_trainers.training.recipe import TrainingRecipe
 
     keys = [key for key, _, _ in (*leaves(Recipe), *flight_keys(), *leaves(TrainingRecipe)) if key != "model"]
-    try:
-        own, flags = split_recipe_flags(arguments, keys)
-        command = parse(Table2, "table2", own, _HELP)
-    except HelpShown:
-        return 0
+    own, flags = split_recipe_flags(arguments, keys)
+    command = parse(Table2, "table2", own, _HELP)
     need_torch()
     out = command.out or Path(f"table2-{command.profile}")
     again = ["scenegen", "table2", *arguments, *([] if command.out else ["--out", str(out)])]

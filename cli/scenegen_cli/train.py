@@ -10,7 +10,7 @@ from typing import Literal
 from scenegen.foundation.errors import InputError
 from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 from scenegen_cli.teaching import Steps, need_torch, recipe_help, training_flags
 
 
@@ -28,19 +28,19 @@ class Train:
     profile: str = "ci"
     """Size of the training: ci (minutes), small (an hour or so), paper (a GPU)."""
     seed: int = 0
-    """Of initial weights, order of samples, mirroring and dropout."""
+    """Seed of initial weights, order of samples, mirroring and dropout."""
     out: Path | None = None
     """Directory of the training; by default MODEL-seedSEED here."""
     recipe: Path | None = None
     """YAML file of recipe keys; flags win over it."""
     accelerator: Literal["cpu", "gpu", "auto"] = "cpu"
-    """On what."""
+    """Where it runs."""
     devices: int = 1
-    """How many of them; they share every batch."""
+    """How many CPUs or GPUs; they share every batch."""
     precision: Literal["32-true", "bf16-mixed", "16-mixed"] = "32-true"
-    """Arithmetic."""
+    """Numbers it computes with."""
     threads: int = 1
-    """Of the CPU; part of the result's last digit, hence not taken from the machine."""
+    """Threads of the CPU; part of the result's last digit, hence not taken from the machine."""
     tensorboard: bool = False
     """Log for TensorBoard besides log.csv."""
     dry_run: bool = False
@@ -51,11 +51,8 @@ class Train:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        own, flags = training_flags(arguments)
-        command = parse(Train, "train", own, recipe_help())
-    except HelpShown:
-        return 0
+    own, flags = training_flags(arguments)
+    command = parse(Train, "train", own, recipe_help())
     from scenegen_trainers.training.recipe import resolve_training
 
     seeded = {**flags, "seed": command.seed}

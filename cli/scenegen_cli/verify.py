@@ -11,7 +11,7 @@ import tyro
 
 from scenegen.foundation.errors import InputError
 from scenegen_cli.console import note, say, say_json, size
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 if TYPE_CHECKING:
     from scenegen_datasets.verify.rerender import Rerendered
@@ -33,7 +33,7 @@ class Verify:
     rerender: int = 0
     """So many random frames are rendered again, from the lock alone, and compared."""
     seed: int = 0
-    """Draws those frames."""
+    """Seed that draws those frames."""
     jobs: int = 0
     """Processes; 0 is one per CPU."""
     json: bool = False
@@ -42,10 +42,7 @@ class Verify:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Verify, "verify", arguments)
-    except HelpShown:
-        return 0
+    command = parse(Verify, "verify", arguments)
     from scenegen_cli.making import processes
     from scenegen_cli.progress import Meter
     from scenegen_datasets.verify import verify

@@ -10,7 +10,7 @@ from typing import Annotated
 import tyro
 
 from scenegen_cli.console import say
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 
 @dataclass(frozen=True)
@@ -27,10 +27,7 @@ class View:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(View, "view", arguments)
-    except HelpShown:
-        return 0
+    command = parse(View, "view", arguments)
     from scenegen_datasets.view.serve import serve
 
     serve(command.dataset, port=command.port, show=not command.no_open, ready=say)

@@ -9,8 +9,9 @@ import tyro
 
 from scenegen.foundation.errors import InputError
 from scenegen_cli.helping import command_help, keys_help
+from scenegen_cli.leaving import HelpShown
 from scenegen_cli.main import main
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 
 
 @dataclass(frozen=True)
