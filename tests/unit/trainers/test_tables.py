@@ -120,6 +120,28 @@ def test_train_and_evaluate_from_the_command_line(
     assert main(["evaluate", model, str(toy), "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["scores"]["images"] == 8
     assert (out / "evaluation-test" / "worst.png").is_file()
+    assert main(["evaluate", model, str(toy), "--out", model]) == 2
+    assert "is a file; name a directory" in capsys.readouterr().err
+    assert main(["evaluate", model, str(toy), "--split", "train", "--pairs", "4"]) == 0
+    said = capsys.readouterr().out
+    assert [line.split()[-7] for line in said.splitlines()[1:9:4]] == ["network", "network"]
+    assert "learned from these very pairs" in (out / "evaluation-train" / "evaluation.html").read_text()
+
+
+@pytest.mark.slow
+def test_two_processes_share_a_training(toy: Path, tmp_path: Path) -> None:
+    """Distributed data parallel on the CPU; a second call finds it done."""
+    start = tmp_path / "start.py"
+    start.write_text("from scenegen_cli.main import main\nraise SystemExit(main())\n")
+    out = tmp_path / "run"
+    command = [sys.executable, start, "train", "--data", toy, "--out", out, "--devices", "2", *TINY]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.strip() == str(out / "model.pt")
+    assert "2 processes" in done.stderr and "deprecated" not in done.stderr
+    record = read_checkpoint(out / "model.pt").record
+    assert record["step"] == record["recipe"]["training"]["steps"]
+    assert not (out / ".lock").exists()
 
 
 @pytest.mark.parametrize(
@@ -131,6 +153,9 @@ def test_train_and_evaluate_from_the_command_line(
         (["train", "--data", "x", "--inputs.flow", "fernback"], "perhaps you meant 'farneback'"),
         (["train", "--data", "x", "--profile", "tiny"], "--profile tiny: unknown profile; known: ci"),
         (["evaluate", "none.pt", "x"], "none.pt: no such file"),
+        (["evaluate", "none.pt", "x", "--pairs", "-3"], "--pairs -3: so many, or 0 for all"),
+        (["evaluate", "none.pt", "x", "--threads", "0"], "--threads 0: at least 1"),
+        (["onnx"], "name at least one checkpoint"),
         (["table1"], "--data is missing"),
         (["table1", "--data", "x", "--seeds", "0"], "--seeds must be at least 1"),
     ],

@@ -49,20 +49,25 @@ class KilledError(Exception):
     pass
 
 
-@pytest.mark.parametrize("model", ["pix2pix-flow", "litemono"])
-def test_a_killed_training_ends_where_an_undisturbed_one_does(toy: Path, tmp_path: Path, model: str) -> None:
+REDRAWN = {"inputs": {"frames": 2, "flow": "truth"}, "training": {"noise": "redrawn"}}
+
+
+@pytest.mark.parametrize(("model", "more"), [("pix2pix-flow", {}), ("pix2pix", REDRAWN), ("litemono", {})])
+def test_a_killed_training_ends_where_an_undisturbed_one_does(
+    toy: Path, tmp_path: Path, model: str, more: dict[str, Any]
+) -> None:
     whole, broken = tmp_path / "whole", tmp_path / "broken"
-    taught(toy, whole, model)
+    taught(toy, whole, model, **more)
 
     def kill(now: Taught) -> None:
         if now.step == 5:  # one step past the last saved state
             raise KilledError
 
     with pytest.raises(KilledError):
-        train(recipe(model), TrainingData.at(toy), broken, Machine(), kill)
+        train(recipe(model, **more), TrainingData.at(toy), broken, Machine(), kill)
     assert not (broken / MODEL).exists()
     steps: list[int] = []
-    train(recipe(model), TrainingData.at(toy), broken, Machine(), lambda now: steps.append(now.step))
+    train(recipe(model, **more), TrainingData.at(toy), broken, Machine(), lambda now: steps.append(now.step))
     assert steps == [5, 6]
     assert (whole / MODEL).read_bytes() == (broken / MODEL).read_bytes()
     assert (whole / "log.csv").read_bytes() == (broken / "log.csv").read_bytes()
