@@ -10,6 +10,12 @@ from scenegen.classes import Semantic
 from scenegen.geometry.part import face_areas, face_normals
 from scenegen.world import World
 
+GROUND = [
+    Semantic.ROAD, Semantic.SIDEWALK, Semantic.ROAD_MARKING, Semantic.SOIL, Semantic.GRASS, Semantic.WATER,
+    Semantic.SPORTS_SURFACE,
+]  # fmt: skip
+"""Classes of the ground where nothing is built, but for the sea and its shore."""
+
 
 def arrays(world: World) -> list[np.ndarray]:
     """Every array of a world, those of its movers included."""
@@ -60,9 +66,9 @@ def feet(found: list[np.ndarray]) -> np.ndarray:
     return np.array([thing[np.argmin(thing[:, 2])] for thing in found]).reshape(-1, 3)
 
 
-def ground_below(world: World, xy: np.ndarray, ground: list[Semantic]) -> tuple[np.ndarray, np.ndarray]:
+def ground_below(world: World, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Point and height of every ground face that vertical lines through points meet (plain plane equations)."""
-    flat = np.isin(world.face_semantic, ground)
+    flat = np.isin(world.face_semantic, GROUND)
     flat[flat] = normals(world, flat)[:, 2] > 0.3
     triangle, normal = corners(world, flat), normals(world, flat)
     tree = shapely.STRtree(shapely.polygons(triangle[..., :2]))
@@ -102,9 +108,9 @@ def check_palette(world: World) -> None:
         assert low <= surface.emissivity <= high
 
 
-def check_one_ground(world: World, xy: np.ndarray, ground: list[Semantic], built: list[Semantic]) -> None:
+def check_one_ground(world: World, xy: np.ndarray, *built: Semantic) -> None:
     """A vertical line meets the ground once, or something built that stands in its place."""
-    layers = np.bincount(ground_below(world, xy, ground)[0], minlength=len(xy))
+    layers = np.bincount(ground_below(world, xy)[0], minlength=len(xy))
     assert layers.max() == 1
     cover = shapely.STRtree(shapely.polygons(corners(world, np.isin(world.face_semantic, built))[..., :2]))
     bare = shapely.points(xy[layers == 0])

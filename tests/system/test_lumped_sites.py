@@ -28,7 +28,7 @@ from scenegen.parts.vegetation.species import SPECIES
 from scenegen.parts.vegetation.tree import LEAVES, tree
 from scenegen.parts.vehicles.slots import SLOTS, TYRE
 from scenegen.parts.vehicles.vehicle import vehicle
-from scenegen.world import HeightField, World
+from scenegen.world import HeightField
 from scenegen_render.exposure.expose import expose
 from scenegen_render.exposure.knobs import ExposureKnobs
 from scenegen_render.scene import load
@@ -71,12 +71,10 @@ class Field:
             builder.add(place(template, spot, np.zeros(1), np.full((1, 3), size), surfaces, one + 1 + k))
         merged = builder.merge()
         self.sites = merged.sites
-        world = World(
-            "field", merged.mesh, merged.face_surface, merged.face_semantic, merged.face_object,
-            merged.corner_site, merged.sites, palette.surfaces(),
-            HeightField((-HALF_M, -HALF_M), 2 * HALF_M, np.zeros((2, 2), np.float32)),
-            ((-HALF_M, -HALF_M, 0.0), (HALF_M, HALF_M, 120.0)), (),
-        )  # fmt: skip
+        level = HeightField((-HALF_M, -HALF_M), 2 * HALF_M, np.zeros((2, 2), np.float32))
+        world = merged.world(
+            "field", palette.surfaces(), level, ((-HALF_M, -HALF_M, 0.0), (HALF_M, HALF_M, 120.0)), ()
+        )
         loaded = load(world)
         knobs = ExposureKnobs(directions=256, sun_step_min=120.0, smoothing=False)
         exposure = expose(loaded, JUNE, stream(4, "exposure"), knobs)

@@ -23,7 +23,7 @@ from scenegen.parts.fixtures.erect import FIXTURES
 from scenegen.parts.people.body import body
 from scenegen.parts.vehicles.shapes import CARS
 from scenegen.parts.vehicles.vehicle import vehicle
-from scenegen.world import HeightField, World
+from scenegen.world import HeightField
 from scenegen_render.exposure.expose import expose
 from scenegen_render.exposure.knobs import ExposureKnobs
 from scenegen_render.scene import load
@@ -53,12 +53,10 @@ def own_share() -> dict[str, np.ndarray]:
         spot = np.array([[(k - len(templates) / 2) * APART_M, 0.0, 0.0]])
         builder.add(place(template, spot, np.zeros(1), np.ones((1, 3)), np.array([skins]), one + 1 + k))
     merged = builder.merge()
-    world = World(
-        "field", merged.mesh, merged.face_surface, merged.face_semantic, merged.face_object,
-        merged.corner_site, merged.sites, palette.surfaces(),
-        HeightField((-HALF_M, -HALF_M), 2 * HALF_M, np.zeros((2, 2), np.float32)),
-        ((-HALF_M, -HALF_M, 0.0), (HALF_M, HALF_M, 120.0)), (),
-    )  # fmt: skip
+    level = HeightField((-HALF_M, -HALF_M), 2 * HALF_M, np.zeros((2, 2), np.float32))
+    world = merged.world(
+        "field", palette.surfaces(), level, ((-HALF_M, -HALF_M, 0.0), (HALF_M, HALF_M, 120.0)), ()
+    )
     loaded = load(world)
     knobs = ExposureKnobs(directions=128, sun_step_min=120.0, smoothing=False)
     exposure = expose(loaded, Season(50.0, 6, 21), stream(4, "exposure"), knobs)

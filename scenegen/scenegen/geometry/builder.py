@@ -9,7 +9,9 @@ from jaxtyping import UInt8, UInt16, UInt32
 
 from scenegen.geometry.beside import beside_things
 from scenegen.geometry.part import Part, concatenate, face_areas
-from scenegen.world import Sites, TriangleMesh
+from scenegen.materials.material import Surface
+from scenegen.movers.mover import Mover
+from scenegen.world import HeightField, Sites, TriangleMesh, World
 
 MIN_FACE_AREA_M2 = 1e-6
 """Faces below this area are dropped: nobody sees a square millimetre, and its normal is noise in float32."""
@@ -27,6 +29,31 @@ class MergedGeometry:
     face_object: UInt32[np.ndarray, "faces"]
     corner_site: UInt32[np.ndarray, "faces 3"]
     sites: Sites
+
+    def world(
+        self,
+        map: str,
+        palette: tuple[Surface, ...],
+        ground: HeightField,
+        flight_box_m: tuple[tuple[float, float, float], tuple[float, float, float]],
+        counts: tuple[tuple[str, int], ...],
+        movers: tuple[Mover, ...] = (),
+    ) -> World:
+        """Add the other half; its fields are those of `scenegen.world.World`."""
+        return World(
+            map=map,
+            mesh=self.mesh,
+            face_surface=self.face_surface,
+            face_semantic=self.face_semantic,
+            face_object=self.face_object,
+            corner_site=self.corner_site,
+            sites=self.sites,
+            palette=palette,
+            ground=ground,
+            flight_box_m=flight_box_m,
+            counts=counts,
+            movers=movers,
+        )
 
 
 class GeometryBuilder:

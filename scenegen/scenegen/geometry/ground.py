@@ -193,9 +193,8 @@ def _site_frame(
     # A site all of whose triangles are slivers has no normal; it goes with them when parts are merged.
     normal = np.where(length > 0.0, normal / np.maximum(length, 1e-300), np.array([0.0, 0.0, 1.0]))
     pull = mean(vertices[faces].mean(axis=1)) - position
-    pull -= (
-        np.einsum("sk,sk->s", pull, normal)[:, None] * normal
-    )  # along the ground: on a crest it would sink in
+    # Along the ground: on a crest it would sink in.
+    pull -= np.einsum("sk,sk->s", pull, normal)[:, None] * normal
     length = np.linalg.norm(pull, axis=1)
     return position + pull * np.minimum(_NUDGE_M / np.maximum(length, 1e-9), 0.5)[:, None], normal
 

@@ -6,6 +6,7 @@ import numpy as np
 from jaxtyping import Float64, Int64
 
 from scenegen.geometry.part import LUMP_STANDOFF_M, STANDOFF_M, face_normals
+from scenegen.geometry.rings import around
 from scenegen.geometry.template import Template
 
 
@@ -79,19 +80,13 @@ class Modeller:
         """Add a tapered tube without lids; `sites` lumped sites around its middle."""
         start, end = np.asarray(start, np.float64), np.asarray(end, np.float64)
         axis = (end - start) / np.linalg.norm(end - start)
-        helper = np.array([1.0, 0.0, 0.0]) if abs(axis[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
-        u = np.cross(helper, axis)
-        u /= np.linalg.norm(u)
-        v = np.cross(axis, u)
-        angle = 2 * np.pi * np.arange(sides) / sides
-        ring = np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v
+        ring = around(axis, sides)
         vertices = np.concatenate([start + radius_start_m * ring, end + radius_end_m * ring])
         k, after = np.arange(sides), (np.arange(sides) + 1) % sides
         quads = np.stack([k, after, after + sides, k + sides], axis=1)
         radius, middle = (radius_start_m + radius_end_m) / 2, (start + end) / 2
         first = len(self._sites)
-        for turn in 2 * np.pi * (np.arange(sites) + 0.5) / sites:
-            out = np.cos(turn) * u + np.sin(turn) * v
+        for out in around(axis, sites, turned=0.5):
             self.site(middle + radius * out, out, LUMP_STANDOFF_M)
         site = first + (k * sites) // sides
         self.mesh(

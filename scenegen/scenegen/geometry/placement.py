@@ -1,4 +1,4 @@
-"""Placing things in the plan: oriented rectangles, distances along lines, and keeping things apart."""
+"""Placing things in the plan: oriented rectangles, distances along lines, roads that lead out, and keeping apart."""
 
 from __future__ import annotations
 
@@ -58,3 +58,35 @@ def along(
     heading = np.arctan2(step[k, 1], step[k, 0])
     right = np.column_stack([np.sin(heading), -np.cos(heading)])
     return line[k] + step[k] * t[:, None] + right * offset_m[:, None], heading
+
+
+def roads_out(
+    exits: Float64[np.ndarray, "exits 2 2"],
+    far_m: float,
+    sway_m: float,
+    bend_m: float,
+    tuck_m: float,
+    points: int,
+) -> np.ndarray:
+    """Centre lines of the roads that leave a place, as an array of shapely lines.
+
+    Parameters
+    ----------
+    exits : float64 (exits, 2, 2)
+        Point and unit direction in which a street leaves.
+    far_m : float
+        Half the side of the square that is land at all [m]; roads end beyond it.
+    sway_m, bend_m : float
+        How far a road bends aside, and over what way (of a radian) [m].
+    tuck_m : float
+        How far a road begins inside the place [m].
+    points : int
+        Of each line.
+    """
+    t = np.linspace(-tuck_m, 2.0 * far_m, points)
+    lines = []
+    for start, direction in exits:
+        across = np.array([-direction[1], direction[0]])
+        sway = sway_m * (1 - np.cos(t / bend_m)) * np.sign(start @ across + 1e-9)
+        lines.append(shapely.LineString(start + t[:, None] * direction + sway[:, None] * across))
+    return np.array(lines, dtype=object)

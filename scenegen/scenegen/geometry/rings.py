@@ -1,9 +1,21 @@
-"""Closed rings in the plan: offsets with mitres, edges, strips along them."""
+"""Closed rings: round an axis; in the plan their offsets with mitres, and strips along them."""
 
 from __future__ import annotations
 
 import numpy as np
 from jaxtyping import Float64
+
+
+def around(
+    axis: Float64[np.ndarray, "3"], sides: int, turned: float = 0.0
+) -> Float64[np.ndarray, "sides 3"]:
+    """Unit vectors across a unit axis, evenly around it; `turned` is the place of the first, in steps."""
+    helper = np.array([1.0, 0.0, 0.0]) if abs(axis[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
+    u = np.cross(helper, axis)
+    u /= np.linalg.norm(u)
+    v = np.cross(axis, u)
+    angle = 2 * np.pi * (np.arange(sides) + turned) / sides
+    return np.asarray(np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v)
 
 
 def inset(ring: Float64[np.ndarray, "points 2"], distance_m: float) -> Float64[np.ndarray, "points 2"]:

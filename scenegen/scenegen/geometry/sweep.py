@@ -44,9 +44,8 @@ def sweep(
     stations, facets = len(line), len(profile) - 1
     right = _right(line)
     corner = line[:, None] + profile[None, :, :1] * right[:, None] + profile[None, :, 1:] * _UP
-    ends = np.stack(
-        [corner[:, :-1], corner[:, 1:]], axis=2
-    )  # stations, facets, 2, 3: facets share no vertices
+    # stations, facets, 2, 3: facets share no vertices
+    ends = np.stack([corner[:, :-1], corner[:, 1:]], axis=2)
     s, f = (g.ravel() for g in np.meshgrid(np.arange(stations - 1), np.arange(facets), indexing="ij"))
     here = 2 * (s * facets + f)
     after = here + 2 * facets

@@ -6,6 +6,7 @@ import numpy as np
 
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import LUMP_STANDOFF_M, face_normals
+from scenegen.geometry.rings import around
 from scenegen.geometry.template import Template
 from scenegen.parts.lofts import fan_faces, loft_faces
 
@@ -101,12 +102,7 @@ class Skin:
         """Add a tapered tube with a lid at its end."""
         start, end = np.asarray(start, np.float64), np.asarray(end, np.float64)
         axis = (end - start) / np.linalg.norm(end - start)
-        helper = np.array([1.0, 0.0, 0.0]) if abs(axis[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
-        u = np.cross(helper, axis)
-        u /= np.linalg.norm(u)
-        v = np.cross(axis, u)
-        turn = 2 * np.pi * np.arange(sides) / sides
-        ring = np.cos(turn)[:, None] * u + np.sin(turn)[:, None] * v
+        ring = around(axis, sides)
         points = np.concatenate([start + radii_m[0] * ring, end + radii_m[1] * ring])
         self.add(points, np.concatenate([loft_faces(2, sides), fan_faces(sides, sides)]), slot, semantic)
 

@@ -17,6 +17,7 @@ from scenegen.maps.city.knobs import CityKnobs
 from scenegen.maps.registry import MAPS, build_world, map_family
 from scenegen.materials.material import Build
 from worlds import (
+    GROUND,
     areas,
     check_apart,
     check_arrays,
@@ -30,15 +31,12 @@ from worlds import (
     plans,
     things,
     under,
-)  # fmt: skip
+)
 
 SEASON = Season(40.0, 7, 15)
 
 SEEDS = (0, 1, 2)
 ROOMS = (Build.WALL_INSULATED, Build.WINDOW, Build.ROOF_INSULATED)
-GROUND = [
-    Semantic.ROAD, Semantic.SIDEWALK, Semantic.ROAD_MARKING, Semantic.SOIL, Semantic.GRASS, Semantic.WATER,
-]  # fmt: skip
 
 
 @cache
@@ -101,9 +99,7 @@ def test_every_building_is_one_instance_with_walls_roof_and_windows(world):
 def test_a_vertical_line_meets_the_ground_once_or_a_building(world):
     xy = np.random.default_rng(7).uniform(-320.0, 320.0, (4000, 2))
     xy[:500] *= 7.0
-    check_one_ground(
-        world, xy, GROUND, [Semantic.ROOF, Semantic.WALL, Semantic.ROOF_EQUIPMENT, Semantic.WINDOW]
-    )
+    check_one_ground(world, xy, Semantic.ROOF, Semantic.WALL, Semantic.ROOF_EQUIPMENT, Semantic.WINDOW)
 
 
 def test_ground_edges_are_shared_by_two_faces_or_meet_a_wall(world):
@@ -126,7 +122,7 @@ def test_ground_edges_are_shared_by_two_faces_or_meet_a_wall(world):
 
 def layers_below(world, xy):
     """How many ground faces a vertical line meets at each point."""
-    return np.bincount(ground_below(world, xy, GROUND)[0], minlength=len(xy))
+    return np.bincount(ground_below(world, xy)[0], minlength=len(xy))
 
 
 def test_undersides_of_roofs_hang_over_the_ground_outside(world):

@@ -15,6 +15,7 @@ from scenegen.maps.neighborhood.knobs import NeighborhoodKnobs
 from scenegen.maps.neighborhood.neighborhood import build_neighborhood
 from scenegen.movers.company import Company
 from worlds import (
+    GROUND,
     check_apart,
     check_arrays,
     check_one_ground,
@@ -27,13 +28,10 @@ from worlds import (
     plans,
     things,
     under,
-)  # fmt: skip
+)
 
 SEEDS = (0, 1, 2)
 SMALL = NeighborhoodKnobs(extent_m=(220.0, 235.0), pool_share=0.3, moving_cars_per_km=9.0)
-GROUND = [
-    Semantic.ROAD, Semantic.SIDEWALK, Semantic.ROAD_MARKING, Semantic.SOIL, Semantic.GRASS, Semantic.WATER,
-]  # fmt: skip
 WALLS = [Semantic.WALL, Semantic.WINDOW, Semantic.DOOR]
 
 
@@ -70,7 +68,7 @@ def test_what_is_there(world):
 def test_a_vertical_line_meets_the_ground_once_or_a_house(world):
     xy = np.random.default_rng(7).uniform(-130.0, 130.0, (2500, 2))
     xy[:400] *= 10.0
-    check_one_ground(world, xy, GROUND, [*WALLS, Semantic.ROOF])
+    check_one_ground(world, xy, *WALLS, Semantic.ROOF)
 
 
 def test_houses_stand_in_the_ground_and_apart(world):
@@ -93,7 +91,7 @@ def test_walls_reach_the_ground_around_them(world):
     outward = normals(world, world.face_semantic == Semantic.WINDOW)
     upright = np.abs(outward[:, 2]) < 0.01
     spot = panes[upright].mean(axis=1) + 0.6 * outward[upright]
-    point, height = ground_below(world, spot[:, :2], GROUND)
+    point, height = ground_below(world, spot[:, :2])
     sill = panes[upright][point].min(axis=(1, 2)), panes[upright][point][..., 2].min(axis=1)
     assert (height < sill[1] + 0.05).mean() > 0.995
 

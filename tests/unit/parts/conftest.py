@@ -14,7 +14,7 @@ from scenegen.geometry.template import Template
 from scenegen.materials.palette import PaletteBuilder
 from scenegen.parts.workshop import Workshop
 
-JULY, JANUARY = Season(50.0, 7, 1), Season(55.0, 1, 15)
+JULY = Season(50.0, 7, 1)
 
 
 def flat(xy: np.ndarray) -> np.ndarray:

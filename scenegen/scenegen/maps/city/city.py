@@ -76,16 +76,9 @@ def build_city(knobs: CityKnobs, season: Season, rng: np.random.Generator) -> Wo
     plans = _plan(streets, shop, for_plans)
     counts = _build(plans, shop, for_parts)
     movers = plan_motion(streets, shop, on)
-    merged = builder.merge()
     half = _inner_half(streets.outline)
-    return World(
+    return builder.merge().world(
         map="city",
-        mesh=merged.mesh,
-        face_surface=merged.face_surface,
-        face_semantic=merged.face_semantic,
-        face_object=merged.face_object,
-        corner_site=merged.corner_site,
-        sites=merged.sites,
         palette=palette.surfaces(),
         ground=sample_height_field(relief, float(np.abs(streets.outline.bounds).max()) + 60.0, 5.0),
         flight_box_m=((-half, -half, 0.0), (half, half, knobs.flight_ceiling_m)),

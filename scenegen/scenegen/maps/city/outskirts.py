@@ -12,7 +12,7 @@ from scenegen.classes import Semantic
 from scenegen.geometry.ground import Region
 from scenegen.geometry.modelling import Modeller
 from scenegen.geometry.part import Part
-from scenegen.geometry.placement import clear_of, first_come, rectangles
+from scenegen.geometry.placement import clear_of, first_come, rectangles, roads_out
 from scenegen.geometry.standing import mesh_heights
 from scenegen.geometry.template import place
 from scenegen.maps.city.streets import StreetPlan
@@ -26,13 +26,7 @@ _COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "g
 
 def road_lines(plan: StreetPlan) -> np.ndarray:
     """Centre lines of the roads that leave the city."""
-    lines = []
-    for start, direction in plan.exits:
-        t = np.linspace(-3.0, 2.0 * FAR_M, 40)
-        across = np.array([-direction[1], direction[0]])
-        sway = 60.0 * (1 - np.cos(t / 420.0)) * np.sign(start @ across + 1e-9)
-        lines.append(shapely.LineString(start + t[:, None] * direction + sway[:, None] * across))
-    return np.array(lines, dtype=object)
+    return roads_out(plan.exits, FAR_M, sway_m=60.0, bend_m=420.0, tuck_m=3.0, points=40)
 
 
 def far_regions(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) -> list[Region]:

@@ -52,16 +52,9 @@ def build_coastline(knobs: CoastlineKnobs, season: Season, rng: np.random.Genera
     builder.add(land_part, build_sea(sea, shop), *things.parts)
     builder.add(*build_marram(land_part, shop, grass), *build_horizon(rock, land_part, shop, far))
     movers = depart(plan, layout, sea, shop, moving)
-    merged = builder.merge()
     half = coast.half_m - _MARGIN_M
-    return World(
+    return builder.merge().world(
         map="coastline",
-        mesh=merged.mesh,
-        face_surface=merged.face_surface,
-        face_semantic=merged.face_semantic,
-        face_object=merged.face_object,
-        corner_site=merged.corner_site,
-        sites=merged.sites,
         palette=palette.surfaces(),
         ground=solid_heights(relief, coast.half_m + 40.0, 2.0),
         flight_box_m=((-half, -half, 0.0), (half, half, knobs.flight_ceiling_m)),

@@ -71,9 +71,8 @@ class Sea:
         beyond = np.maximum(np.abs(xy).max(axis=1) - self.relief.coast.half_m, 0.0)
         most = 0.25 * self.waves.significant_m + _FAR_SWELL_M * (1.0 - np.exp(-beyond / 3000.0))
         most = most * np.minimum(beyond / 100.0, 1.0)
-        scatter = np.sin(xy @ _SCATTER.T).sum(axis=1) / np.sqrt(
-            1.5
-        )  # far shorter than any cell: no two vertices agree
+        # Far shorter than any cell: no two vertices agree.
+        scatter = np.sin(xy @ _SCATTER.T).sum(axis=1) / np.sqrt(1.5)
         return np.asarray(np.minimum(self.slope * cell_m / np.sqrt(2.0), most) * scatter)
 
 

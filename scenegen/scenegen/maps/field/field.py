@@ -80,16 +80,9 @@ def build_field(knobs: FieldKnobs, season: Season, rng: np.random.Generator) -> 
     distant, groves, farm_houses = far_objects(country, masses, half, shop, far)
     builder.add(*equipment.parts, *cars, *people, *bales, *plants, *distant)
     movers = build_movers(grounds, country, half, shop, go)
-    merged = builder.merge()
     inner = half - _MARGIN_M
-    return World(
+    return builder.merge().world(
         map="field",
-        mesh=merged.mesh,
-        face_surface=merged.face_surface,
-        face_semantic=merged.face_semantic,
-        face_object=merged.face_object,
-        corner_site=merged.corner_site,
-        sites=merged.sites,
         palette=palette.surfaces(),
         ground=sample_height_field(relief, half + 60.0, 4.0),
         flight_box_m=((-inner, -inner, 0.0), (inner, inner, knobs.flight_ceiling_m)),

@@ -18,7 +18,8 @@ TREAD_M = 0.85
 AISLE_M = 1.6
 """Walkway before the first row of a stand [m]."""
 
-_MARGIN_M, _APART_M, _VERGE_M = 6.0, 9.0, 4.0
+_MARGIN_M, _APART_M = 6.0, 9.0
+"""Free ground around the main pitch, and between two platforms."""
 _MODULE_M = 16.6
 """Depth of two rows of 5 m bays and the aisle between them."""
 

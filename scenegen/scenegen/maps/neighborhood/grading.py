@@ -13,7 +13,10 @@ from scenegen.geometry.relief import Relief
 from scenegen.world import HeightField
 
 _CELL_M = 1.0
-_EASE_M, _LEVEL_M, _CALM_M = 5.0, 1.0, 4.0
+_LEVEL_M, _EASE_M = 1.0, 5.0
+"""How far around a pad the ground stays level, and how far from there it eases back to the slope."""
+_CALM_M = 4.0
+"""Nearer than this to a street, the ground follows the street's slope more and more."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,14 +37,6 @@ class Graded:
     def __call__(self, xy: Float64[np.ndarray, "points 2"]) -> Float64[np.ndarray, "points"]:
         """Height [m] at plan points."""
         return np.asarray(self.base(xy) + self.shift.at(xy))
-
-    def sample(self, half_m: float, cell_m: float) -> HeightField:
-        """The ground on a square grid centred at the origin."""
-        count = round(2 * half_m / cell_m) + 1
-        axis = np.linspace(-half_m, half_m, count)
-        east, north = np.meshgrid(axis, axis)
-        height = self(np.column_stack([east.ravel(), north.ravel()])).reshape(count, count)
-        return HeightField((-half_m, -half_m), 2 * half_m / (count - 1), height.astype(np.float32))
 
 
 def grade(relief: Relief, pads: list[shapely.Polygon], street: shapely.Polygon, half_m: float) -> Graded:

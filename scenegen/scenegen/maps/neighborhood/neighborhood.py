@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import shapely
+from jaxtyping import Float64
 from scipy.ndimage import distance_transform_cdt
 
 from scenegen.buildings.detached.body import Home, Role, Top, outline
@@ -15,10 +16,10 @@ from scenegen.buildings.detached.walls import home_walls
 from scenegen.buildings.lots import Lot
 from scenegen.climate.season import Season
 from scenegen.geometry.builder import GeometryBuilder
-from scenegen.geometry.relief import draw_relief
+from scenegen.geometry.relief import draw_relief, sample_height_field
 from scenegen.maps.neighborhood.borders import build_fences, plan_borders
 from scenegen.maps.neighborhood.grading import Graded, grade
-from scenegen.maps.neighborhood.greenery import build_greenery, obstacles, plan_trees
+from scenegen.maps.neighborhood.greenery import Obstacles, build_greenery, obstacles, plan_trees
 from scenegen.maps.neighborhood.ground import build_ground
 from scenegen.maps.neighborhood.kerbside import build_kerbside, plan_kerbside
 from scenegen.maps.neighborhood.knobs import NeighborhoodKnobs
@@ -29,7 +30,7 @@ from scenegen.maps.neighborhood.parcels import Parcel
 from scenegen.maps.neighborhood.people import people
 from scenegen.maps.neighborhood.settler import Settler, homes_of
 from scenegen.maps.neighborhood.streets import StreetPlan, draw_streets
-from scenegen.maps.neighborhood.traffic import build_traffic, find_spots
+from scenegen.maps.neighborhood.traffic import Spots, build_traffic, find_spots
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
 from scenegen.materials.palette import PaletteBuilder
 from scenegen.movers.mover import Mover
@@ -84,18 +85,8 @@ def build_neighborhood(knobs: NeighborhoodKnobs, season: Season, rng: np.random.
     builder.add(*build_kerbside(kerbside, homes, shop, posts_rng), *build_fences(borders, shop, border_rng))
     builder.add(*build_traffic(spots, shop, cars_rng))
     builder.add(*build_greenery(trees, borders, parcels, blocked, shop, tree_rng))
-    trunks = shapely.buffer(shapely.points(trees.xy), 0.4, quad_segs=1)
-    pools = [p.garden.coping for p in parcels if p.garden.coping is not None]
-    busy = [
-        blocked.solid,
-        blocked.posts,
-        blocked.lines,
-        spots.plan,
-        trunks,
-        np.array(pools, dtype=object),
-        walks,
-    ]
-    crowd, standing = people(parcels, np.concatenate(busy), shop, people_rng)
+    busy = np.concatenate([_occupied(parcels, blocked, spots, trees.xy), walks])
+    crowd, standing = people(parcels, busy, shop, people_rng)
     builder.add(*crowd, *far_objects(plan, lie_of(plane, plan, relief), shop, far))
     movers = set_out(plan, rounds, shop, motion_rng)
     counts = (
@@ -111,6 +102,17 @@ def build_neighborhood(knobs: NeighborhoodKnobs, season: Season, rng: np.random.
         ("people who walk or run", sum(m.kind == "person" for m in movers)),
     )
     return _world(plan, parcels, graded, shop, counts, movers)
+
+
+def _occupied(
+    parcels: list[Parcel], blocked: Obstacles, spots: Spots, trees: Float64[np.ndarray, "trees 2"]
+) -> np.ndarray:
+    """Plans of everything that nobody can stand in, as shapely geometries."""
+    trunks = shapely.buffer(shapely.points(trees), 0.4, quad_segs=1)
+    pools = [p.garden.coping for p in parcels if p.garden.coping is not None]
+    return np.concatenate(
+        [blocked.solid, blocked.posts, blocked.lines, spots.plan, trunks, np.array(pools, dtype=object)]
+    )
 
 
 def _settle(
@@ -169,18 +171,11 @@ def _world(
     counts: tuple[tuple[str, int], ...],
     movers: tuple[Mover, ...],
 ) -> World:
-    merged = shop.builder.merge()
     x, y, half = _inner_square(plan.outline)
-    return World(
+    return shop.builder.merge().world(
         map="neighborhood",
-        mesh=merged.mesh,
-        face_surface=merged.face_surface,
-        face_semantic=merged.face_semantic,
-        face_object=merged.face_object,
-        corner_site=merged.corner_site,
-        sites=merged.sites,
         palette=shop.palette.surfaces(),
-        ground=graded.sample(float(np.abs(plan.outline.bounds).max()) + 60.0, _HEIGHT_CELL_M),
+        ground=sample_height_field(graded, float(np.abs(plan.outline.bounds).max()) + 60.0, _HEIGHT_CELL_M),
         flight_box_m=((x - half, y - half, 0.0), (x + half, y + half, shop.knobs.flight_ceiling_m)),
         counts=(
             ("streets", len(plan.lines)),

@@ -12,13 +12,6 @@ from scenegen.buildings.detached.body import Body, HomeStyle
 from scenegen.buildings.lots import Lot
 from scenegen.maps.neighborhood.garden import Garden
 
-FLOOR_M = 0.16
-"""Floors above the graded ground around the house [m]."""
-
-_SIDE_M, _ATTEMPTS = 1.4, 6
-_BELOW_GROUND_M = 0.7
-_SETBACK_M = (4.5, 7.5)
-
 
 @dataclass(frozen=True, eq=False)
 class Parcel:

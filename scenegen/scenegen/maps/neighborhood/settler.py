@@ -26,9 +26,12 @@ from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
 FLOOR_M = 0.16
 """Floors above the graded ground around the house [m]."""
 
-_SIDE_M, _ATTEMPTS = 1.4, 6
+_SIDE_M, _SETBACK_M = 1.4, (4.5, 7.5)
+"""Free strip inside a lot's borders, and how far houses stand back from the street."""
+_ATTEMPTS = 6
+"""Houses drawn for a lot, each smaller than the last, before it stays a meadow."""
 _BELOW_GROUND_M = 0.7
-_SETBACK_M = (4.5, 7.5)
+"""How far walls go on below the lowest ground around them."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from jaxtyping import Float64
 
+from scenegen.geometry.placement import roads_out
 from scenegen.maps.neighborhood.network import TURNING_RADIUS_M, Network, draw_network
 from scenegen.maps.neighborhood.warp import Warp
 
@@ -101,13 +102,7 @@ def draw_streets(
 
 def road_lines(exits: Float64[np.ndarray, "exits 2 2"]) -> np.ndarray:
     """Centre lines of the roads on which streets go on outwards, up to the far edge, as shapely lines."""
-    lines = []
-    for start, direction in exits:
-        t = np.linspace(-1.0, 2.0 * FAR_M, 60)
-        across = np.array([-direction[1], direction[0]])
-        sway = 45.0 * (1 - np.cos(t / 380.0)) * np.sign(start @ across + 1e-9)
-        lines.append(shapely.LineString(start + t[:, None] * direction + sway[:, None] * across))
-    return np.array(lines, dtype=object)
+    return roads_out(exits, FAR_M, sway_m=45.0, bend_m=380.0, tuck_m=1.0, points=60)
 
 
 def _wind(line: np.ndarray, warp: Warp, turn_rad: float) -> np.ndarray:

@@ -99,14 +99,8 @@ def build_own_scene(name: str, scene: OwnScene, season: Season, rng: np.random.G
     merged = _merge(raw, part_surface, semantic, owner)
     vertices, faces = merged.mesh.vertices.astype(np.float64), merged.mesh.faces.astype(np.int64)
     ground = ground_field(vertices, faces, face_normals(vertices, faces)[0], merged.face_semantic)
-    return World(
+    return merged.world(
         map=name,
-        mesh=merged.mesh,
-        face_surface=merged.face_surface,
-        face_semantic=merged.face_semantic,
-        face_object=merged.face_object,
-        corner_site=merged.corner_site,
-        sites=merged.sites,
         palette=palette,
         ground=ground,
         flight_box_m=_flight_box(vertices, ground, described.sidecar, raw.shift_m),

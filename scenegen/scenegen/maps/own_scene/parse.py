@@ -48,9 +48,8 @@ def read(payload: dict[str, Any], emit: Emit) -> dict[str, Any]:
         data = file.read(MAX_FILE_BYTES + 1)
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter(
-                "error", DeprecationWarning
-            )  # numpy's word for text that is no list of numbers
+            # numpy's word for text that is no list of numbers
+            warnings.simplefilter("error", DeprecationWarning)
             soups, ignored = parse(data, path.suffix.lower(), path.stem)
             scene = repair(join(soups), ignored, payload["up_axis"], payload["unit_m"])
     except InputError:
