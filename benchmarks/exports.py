@@ -23,7 +23,8 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 import numpy as np
 
 from consumers import CONSUMERS, check
-from scenegen_datasets.exports.engine import Request, export
+from scenegen_datasets.exports.engine import export
+from scenegen_datasets.exports.plan import Request
 from scenegen_datasets.job import SPLITS
 
 

@@ -13,7 +13,7 @@ import tyro
 
 from scenegen_cli.console import note, say, say_json, size
 from scenegen_cli.leaving import TerminatedError
-from scenegen_cli.parse import HelpShown, parse
+from scenegen_cli.parse import parse
 from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.registry import FORMATS
 
@@ -52,13 +52,11 @@ class Export:
 
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
-    try:
-        command = parse(Export, "export", arguments, _formats())
-    except HelpShown:
-        return 0
+    command = parse(Export, "export", arguments, _formats())
     from scenegen_cli.making import processes
     from scenegen_cli.progress import Meter
-    from scenegen_datasets.exports.engine import Request, export
+    from scenegen_datasets.exports.engine import export
+    from scenegen_datasets.exports.plan import Request
 
     dataset = command.dataset
     out = command.out or _beside(dataset, command.to)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
-from consumers import containers, pictures, scenes
+from consumers import containers, kitti, pictures, scenes
 from consumers.seen import EXACT, Original, Rule, Seen, compare
 from scenegen_datasets.job import SPLITS
 
@@ -34,7 +34,7 @@ CONSUMERS: dict[str, tuple[Consumer, ...]] = {
     "unpack": (Consumer(containers.unpack, Rule(), (*EXACT, *_PLACE)),),
     "kitti": (
         Consumer(
-            pictures.kitti,
+            kitti.kitti,
             Rule(depth_step_m=1 / 256, depth_most_m=65535 / 256, pose=1e-9, time_s=1e-5),
             (*_GREY, *_PLACE, "flow_px", "flow_seen_px"),
         ),
@@ -59,7 +59,7 @@ CONSUMERS: dict[str, tuple[Consumer, ...]] = {
         ),
         Consumer(partial(pictures.filelist, kind="zoe"), _KITTI, (*_GREY, "K")),
     ),
-    "monodepth2": (Consumer(pictures.monodepth2, _KITTI, (*_GREY, "K"), inner_only=True),),
+    "monodepth2": (Consumer(kitti.monodepth2, _KITTI, (*_GREY, "K"), inner_only=True),),
     "nerfstudio": (Consumer(scenes.nerfstudio, Rule(depth_share=1.2e-7), (*_GREY, *_PLACE)),),
     "colmap": (Consumer(scenes.colmap, Rule(), ("depth", "grey", "pose", "K")),),
     "tum": (

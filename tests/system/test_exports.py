@@ -68,7 +68,7 @@ def test_help_lists_the_formats(capsys: pytest.CaptureFixture[str]) -> None:
         (["/", "--to", "kitti"], "no dataset at /"),
         (["DATA", "--to", "../kitti"], "unknown format"),
         (["DATA", "--to", "tum", "--depth-unit-m", "1e-320"], "--depth-unit-m 9.99989e-321"),
-        (["DATA", "--to", "kitti", "--out", "/proc/export"], "cannot be used"),
+        (["DATA", "--to", "kitti", "--out", "/proc/export"], "cannot be made"),
         (["DATA", "--to", "kitti", "--out", "x" * 300], "File name too long"),
         (["DATA", "--to", "kitti", "--split", "vall"], "perhaps you meant 'val'"),
     ],

@@ -5,8 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from importlib.util import find_spec
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +13,10 @@ import numpy as np
 
 from scenegen.foundation.atomic import remove, write_atomic
 from scenegen.foundation.canonical import pretty
-from scenegen.foundation.errors import DatasetError, InputError, NoSpaceError, ScenegenError, nearest
+from scenegen.foundation.errors import DatasetError, InputError, NoSpaceError, ScenegenError
 from scenegen.foundation.lock import DirectoryLock
 from scenegen.foundation.pool import Done, Failed, Pool, Task
-from scenegen_datasets.description import read_description
-from scenegen_datasets.exports.format import Exported, Format
+from scenegen_datasets.exports.format import Exported
 from scenegen_datasets.exports.marker import (
     FOLDER,
     SUMMARY,
@@ -27,44 +25,17 @@ from scenegen_datasets.exports.marker import (
     clean,
     read_marker,
 )
-from scenegen_datasets.exports.options import Options
-from scenegen_datasets.exports.registry import format_called
+from scenegen_datasets.exports.plan import Plan, Request, plan_of
 from scenegen_datasets.exports.stage import Stage
-from scenegen_datasets.index import checked, job_of
-from scenegen_datasets.job import SPLITS, ClipJob
-from scenegen_datasets.place import check_room, existing_part
+from scenegen_datasets.licence import licence_of
+from scenegen_datasets.place import check_room, existing_part, make_directory
 from scenegen_datasets.run import WORKER_ENVIRONMENT
-from scenegen_datasets.source import Source, open_source
-from scenegen_datasets.store import DATASET
 
 WORKER = "scenegen_datasets.exports.worker:worker"
 """What a worker process does."""
 
 Told = Callable[[int, int], None]
 """Hears of clips done and clips in all."""
-
-
-@dataclass(frozen=True)
-class Request:
-    """What to export, and to what.
-
-    Attributes
-    ----------
-    dataset, root : Path
-        A finished dataset, and the directory of the export.
-    to : str
-        Name of the format.
-    options : Options
-    splits, maps : tuple of str
-        Which clips; empty for all.
-    """
-
-    dataset: Path
-    root: Path
-    to: str
-    options: Options = field(default_factory=Options)
-    splits: tuple[str, ...] = ()
-    maps: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -98,29 +69,6 @@ class Outcome:
     words: tuple[str, ...]
 
 
-@dataclass(frozen=True, eq=False)
-class _Plan:
-    """The clips to export, with what they are made from."""
-
-    format: Format
-    description: Mapping[str, Any]
-    positions: tuple[int, ...]
-    jobs: tuple[ClipJob, ...]
-    identity: Mapping[str, Any]
-    options: Mapping[str, Any]
-
-    @property
-    def frames(self) -> int:
-        """Frames that the format writes."""
-        return sum(job.pairs if self.format.pairs_only else job.frames for job in self.jobs)
-
-    @property
-    def pixels(self) -> int:
-        """Of these frames."""
-        grid = self.description["grid"]
-        return self.frames * int(grid["height_px"]) * int(grid["width_px"])
-
-
 def export(request: Request, processes: int = 1, told: Told | None = None) -> Outcome:
     """Export a dataset, or what is missing of an export.
 
@@ -143,7 +91,7 @@ def export(request: Request, processes: int = 1, told: Told | None = None) -> Ou
     DatasetError
         If a clip of the dataset is damaged.
     """
-    plan = _plan(request)
+    plan = plan_of(request)
     root = request.root
     _prepare(request, plan)
     with DirectoryLock(root):
@@ -158,72 +106,7 @@ def export(request: Request, processes: int = 1, told: Told | None = None) -> Ou
         return _finish(request, plan, markers, len(missing))
 
 
-def _plan(request: Request) -> _Plan:
-    target = format_called(request.to)
-    options = request.options.heeded(target.heeds, target.name)
-    absent = next((name for name in target.modules if find_spec(name) is None), None)
-    if absent is not None:
-        raise InputError(
-            f"--to {target.name} needs {absent}; install it: pip install 'thermal-scenegen[{target.extra}]'"
-        )
-    source = open_source(request.dataset, allow_partial=False)
-    description = read_description(request.dataset / DATASET)
-    lacking = [name for name in target.needs if name not in source.layers]
-    if lacking:
-        raise InputError(
-            f"--to {target.name} needs the layer '{lacking[0]}', which {request.dataset} does not hold "
-            f"(it holds {', '.join(source.layers)})"
-        )
-    positions, jobs = _chosen(request, source)
-    if target.one_camera:
-        _refuse_second_camera(target, source, positions, jobs)
-    identity = {
-        "format": target.name,
-        "dataset": description["name"],
-        "content_id": description["content_id"],
-        "options": options,
-        "splits": [split for split in SPLITS if split in request.splits],
-        "maps": sorted(set(request.maps)),
-    }
-    return _Plan(target, description, positions, jobs, identity, options)
-
-
-def _chosen(request: Request, source: Source) -> tuple[tuple[int, ...], tuple[ClipJob, ...]]:
-    """Clips of the splits and maps that were asked for, in plan order."""
-    jobs = [job_of(checked(head)) for head in source.heads]
-    for flag, asked, known in (
-        ("split", request.splits, set(SPLITS)),
-        ("map", request.maps, {job.map for job in jobs}),
-    ):
-        for name in asked:
-            if name not in known:
-                raise InputError(f"--{flag} {name}: not in {request.dataset}{nearest(name, known)}")
-    chosen = [
-        (position, job)
-        for position, job in enumerate(jobs)
-        if (not request.splits or job.split in request.splits)
-        and (not request.maps or job.map in request.maps)
-    ]
-    if not chosen:
-        raise InputError(
-            f"{request.dataset} holds no clip of what was asked for; ask for another --split or --map"
-        )
-    return tuple(position for position, _ in chosen), tuple(job for _, job in chosen)
-
-
-def _refuse_second_camera(
-    target: Format, source: Source, positions: Sequence[int], jobs: Sequence[ClipJob]
-) -> None:
-    intrinsics = source.heads["K"][list(positions)]
-    other = np.flatnonzero((intrinsics != intrinsics[0]).any(axis=(1, 2)))
-    if other.size:
-        raise InputError(
-            f"--to {target.name} holds one camera, and {jobs[0].name} and {jobs[int(other[0])].name} differ in K; "
-            "export them apart (--map, --split)"
-        )
-
-
-def _prepare(request: Request, plan: _Plan) -> None:
+def _prepare(request: Request, plan: Plan) -> None:
     """Make the directory, after refusing what cannot end well."""
     try:
         root, dataset = request.root.resolve(), request.dataset.resolve()
@@ -240,15 +123,15 @@ def _prepare(request: Request, plan: _Plan) -> None:
             need_bytes,
             "export fewer clips (--split, --map), or choose another --out",
         )
-        root.mkdir(parents=True, exist_ok=True)
     except ScenegenError:
         raise
     except (OSError, ValueError) as error:
         reason = error.strerror if isinstance(error, OSError) else str(error)
         raise InputError(f"--out {str(request.root)[:80]!r}: cannot be used: {reason}") from None
+    make_directory(request.root)
 
 
-def _make(request: Request, plan: _Plan, missing: Sequence[int], processes: int, told: Told) -> None:
+def _make(request: Request, plan: Plan, missing: Sequence[int], processes: int, told: Told) -> None:
     setup = {
         "dataset": str(request.dataset.resolve()),
         "root": str(request.root.resolve()),
@@ -282,7 +165,7 @@ def _raise(event: Failed) -> None:
     raise kind(failure.message if failure.exit_code is not None else f"{event.task.key}: {failure.message}")
 
 
-def _finish(request: Request, plan: _Plan, markers: Mapping[str, Marker | None], made: int) -> Outcome:
+def _finish(request: Request, plan: Plan, markers: Mapping[str, Marker | None], made: int) -> Outcome:
     """Write what belongs to all clips, and last the summary that says that everything is there."""
     root = request.root
     whole = {name: marker for name, marker in markers.items() if marker is not None}
@@ -321,11 +204,13 @@ def _finish(request: Request, plan: _Plan, markers: Mapping[str, Marker | None],
     return outcome
 
 
-def _summary(plan: _Plan, outcome: Outcome) -> dict[str, Any]:
+def _summary(plan: Plan, outcome: Outcome) -> dict[str, Any]:
     row = plan.format.row()
     names = ("name", "readers", "layout", "range", "step", "lost", "sky")
     return {
         **plan.identity,
+        "version": plan.description["version"],
+        "license": licence_of(plan.description),
         "format": dict(zip(names, row, strict=True)),
         "clips": outcome.clips,
         "frames": outcome.frames,

@@ -16,8 +16,9 @@ from scenegen.foundation.lock import DirectoryLock
 from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.commit import commit_clip
 from scenegen_datasets.encode import FrameMeta, encode_frame
-from scenegen_datasets.exports.engine import Outcome, Request, export
+from scenegen_datasets.exports.engine import Outcome, export
 from scenegen_datasets.exports.options import Options
+from scenegen_datasets.exports.plan import Request
 from scenegen_datasets.finish import finish
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import DEFAULT_LAYERS

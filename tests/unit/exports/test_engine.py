@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import json
 import os
 import shutil
 import signal
@@ -16,6 +17,7 @@ import pytest
 from scenegen.foundation.errors import CorruptFrameError, InputError, NoSpaceError
 from scenegen_datasets.exports import engine
 from scenegen_datasets.exports.marker import SUMMARY
+from scenegen_datasets.exports.plan import Request
 
 Run = Callable[..., engine.Outcome]
 Tree = Callable[[Path], dict[str, str]]
@@ -37,6 +39,14 @@ def test_a_second_run_writes_nothing(run: Run, tmp_path: Path) -> None:
     assert before == {p: p.stat().st_mtime_ns for p in tmp_path.rglob("*.png")}
 
 
+def test_the_licence_travels(run: Run, tmp_path: Path) -> None:
+    run("kitti", splits=("val",))
+    assert json.loads((tmp_path / "out" / SUMMARY).read_text())["license"] == "CC-BY-4.0"
+    pytest.importorskip("pyarrow")
+    run("hf", "hub", splits=("val",))
+    assert (tmp_path / "hub/README.md").read_text().startswith("---\nlicense: cc-by-4.0\nconfigs:\n")
+
+
 def test_what_is_gone_or_cut_is_written_again(run: Run, tree: Tree, tmp_path: Path) -> None:
     run("kitti")
     whole = tree(tmp_path / "out")
@@ -54,7 +64,8 @@ def test_killed_anywhere_and_continued(step: int, small: Path, run: Run, tree: T
     whole = tree(tmp_path / "whole")
     code = (
         "import itertools, os, signal, sys\nfrom pathlib import Path\n"
-        "from scenegen_datasets.exports.engine import Request, export\nsteps = itertools.count(1)\n"
+        "from scenegen_datasets.exports.engine import export\n"
+        "from scenegen_datasets.exports.plan import Request\nsteps = itertools.count(1)\n"
         "def armed(call):\n"
         "    def wrapper(*a, **k):\n"
         f"        if next(steps) == {step}: os.kill(os.getpid(), signal.SIGKILL)\n"
@@ -134,7 +145,7 @@ def test_out_inside_the_dataset_is_refused(small: Path, tmp_path: Path) -> None:
     (tmp_path / "alias").symlink_to(small)
     for out in (small, small / "shards", small.parent, tmp_path / "alias" / "new"):
         with pytest.raises(InputError, match="inside the dataset or around it"):
-            engine.export(engine.Request(small, out, "kitti"))
+            engine.export(Request(small, out, "kitti"))
 
 
 def test_a_missing_layer_is_named(run: Run, make_dataset: Make, tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.png import png
 from scenegen_datasets.exports.stage import Stage
 from scenegen_datasets.job import SPLITS
+from scenegen_datasets.licence import checked_licence, hub_lines, licence_of
 
 _TEXT, _FLAG = {"dtype": "string", "_type": "Value"}, {"dtype": "bool", "_type": "Value"}
 _WHOLE, _REAL = {"dtype": "int32", "_type": "Value"}, {"dtype": "float64", "_type": "Value"}
@@ -42,12 +43,13 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
 
 
 def finish(stage: Stage, clips: Sequence[Exported], description: Mapping[str, Any], options: Options) -> None:
-    """Write the card, whose header tells `load_dataset` where the splits are."""
+    """Write the card, whose header tells the Hub the licence and `load_dataset` where the splits are."""
     there = [split for split in SPLITS if any(clip.split == split for clip in clips)]
     files = "".join(f"  - split: {_hub_name(split)}\n    path: data/{split}/*.parquet\n" for split in there)
+    licence = "\n".join(hub_lines(checked_licence(licence_of(description))))
     stage.put(
         "README.md",
-        f"---\nconfigs:\n- config_name: default\n  data_files:\n{files}---\n\n# {description['name']}\n\n"
+        f"---\n{licence}\nconfigs:\n- config_name: default\n  data_files:\n{files}---\n\n# {description['name']}\n\n"
         "Thermal (16-bit counts), metric depth (float32 metres, sky is infinite) and flow (pixels).\n",
     )
 

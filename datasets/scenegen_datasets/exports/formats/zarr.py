@@ -10,6 +10,7 @@ from scenegen_datasets.exports.format import Exported, Format, Written
 from scenegen_datasets.exports.formats.arrays import stacks_of, values_of
 from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.stage import Stage
+from scenegen_datasets.licence import licence_of
 
 STORE = "dataset.zarr"
 _LEVEL = 3
@@ -47,8 +48,18 @@ def finish(stage: Stage, clips: Sequence[Exported], description: Mapping[str, An
     import zarr
 
     root = zarr.open_group(str(stage.path(STORE)), mode="w", zarr_format=3)
-    about = ("name", "version", "content_id", "conventions", "grid", "band_um", "sensor", "classes")
-    root.attrs.update({name: description[name] for name in about})
+    about = (
+        "name",
+        "version",
+        "license",
+        "content_id",
+        "conventions",
+        "grid",
+        "band_um",
+        "sensor",
+        "classes",
+    )
+    root.attrs.update({"license": licence_of(description), **{name: description[name] for name in about}})
     for split in sorted({clip.split for clip in clips}):
         group = root.create_group(split)
         group.attrs["clips"] = [clip.name for clip in clips if clip.split == split]
