@@ -4,8 +4,8 @@
 
 Every kind of file gets a flipped bit and a cut, at random places; then a missing receipt, a missing shard, two swapped
 members, two swapped shards, links and pipes in place of files. `--renders` bounds how many of the repairs that need
-the renderer are carried out (each builds a world); the others are verified only. Without DIR, a tiny dataset is
-rendered first. Exits with 1 if anything was not found, not named, or did not come back.
+the renderer are carried out (each builds a world), one of each kind first; the others are verified only. Without DIR,
+a tiny dataset is rendered first. Exits with 1 if anything was not found, not named, or did not come back.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ import small
 from scenegen.foundation.errors import ScenegenError
 from scenegen_cli.main import main as scenegen
 from scenegen_datasets.receipt import read_receipt, receipt_paths, shard_of
+from scenegen_datasets.repair.clean import clean
 from scenegen_datasets.repair.repair import repair
 from scenegen_datasets.verify import verify
 
@@ -43,6 +44,11 @@ class Damage:
     file: str
     do: Callable[[Path], None]
     renders: bool
+
+    @property
+    def kind(self) -> str:
+        """The same for damages that are alike."""
+        return f"{self.what.split()[-1]} {self.file.partition('/')[0]}"
 
 
 def damages(root: Path, rng: np.random.Generator, flips: int) -> Iterator[Damage]:
@@ -63,8 +69,9 @@ def damages(root: Path, rng: np.random.Generator, flips: int) -> Iterator[Damage
         yield Damage(f"bit {bit} of byte {at} flipped", name, _flip(name, at, bit), True)
     yield Damage("two members swapped", shard_of(receipts[0]), _swap_members(receipts[0]), True)
     yield Damage("swapped with another shard", shard_of(receipts[0]), _swap_files(*receipts[:2]), True)
-    yield Damage("a pipe in its place", "index.npy", _pipe("index.npy"), False)
-    yield Damage("a pipe in its place", shard_of(receipts[0]), _pipe(shard_of(receipts[0])), True)
+    for name, heavy in (("index.npy", False), (receipts[0], True), (shard_of(receipts[0]), True)):
+        yield Damage("replaced by a pipe", name, _pipe(name), heavy)
+        yield Damage("replaced by a link", name, _link(name), heavy)
 
 
 def _flip(name: str, at: int, bit: int) -> Callable[[Path], None]:
@@ -84,6 +91,17 @@ def _pipe(name: str) -> Callable[[Path], None]:
     def do(root: Path) -> None:
         (root / name).unlink()
         os.mkfifo(root / name)
+
+    return do
+
+
+def _link(name: str) -> Callable[[Path], None]:
+    """The bytes are right and reached through a link, which a copy of the dataset would not have."""
+
+    def do(root: Path) -> None:
+        outside = root.parent / "outside"
+        (root / name).replace(outside)
+        (root / name).symlink_to(outside)
 
     return do
 
@@ -127,6 +145,8 @@ def trial(sound: Path, root: Path, damage: Damage, *, mend: bool) -> str:
     if not mend:
         return ""
     try:
+        if "link" in damage.what:  # as verify says of it; repair writes over none
+            clean(root)
         done = repair(root, 1)
     except ScenegenError as error:
         return f"refused: {error}"
@@ -139,6 +159,13 @@ def trial(sound: Path, root: Path, damage: Damage, *, mend: bool) -> str:
     return f"other bytes in {', '.join(differ)}" if differ else ""
 
 
+def _chosen(heavy: list[Damage], rng: np.random.Generator) -> list[Damage]:
+    """In an order of chance, but one of each kind first."""
+    shuffled = [heavy[k] for k in rng.permutation(len(heavy))]
+    first = list({damage.kind: damage for damage in reversed(shuffled)}.values())
+    return first + [damage for damage in shuffled if damage not in first]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
@@ -146,7 +173,7 @@ def main() -> None:
     parser.add_argument("dataset", type=Path, nargs="?")
     parser.add_argument("--flips", type=int, default=40)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--renders", type=int, default=3)
+    parser.add_argument("--renders", type=int, default=12)
     options = parser.parse_args()
     rng = np.random.default_rng(options.seed)
     wrong = mended = found = lost = 0
@@ -156,8 +183,7 @@ def main() -> None:
             sys.exit("the dataset could not be rendered")
         start = time.process_time()
         tried = list(damages(sound, rng, options.flips))
-        heavy = [d for d in tried if d.renders]
-        chosen = {id(heavy[k]) for k in rng.permutation(len(heavy))[: options.renders]}
+        chosen = {id(d) for d in _chosen([d for d in tried if d.renders], rng)[: options.renders]}
         for damage in tried:
             mend = not damage.renders or id(damage) in chosen
             reason = trial(sound, Path(folder) / "copy", damage, mend=mend)
@@ -169,7 +195,9 @@ def main() -> None:
             wrong += bool(reason)
             found, mended = found + 1, mended + mend
             if reason:
-                print(f"WRONG {damage.file}: {damage.what}: {reason}")
+                print(f"WRONG {damage.file}: {damage.what}: {reason}", flush=True)
+            elif damage.renders and mend:
+                print(f"rendered again, the same bytes: {damage.file}: {damage.what}", flush=True)
         print(
             f"{len(tried)} damages: {found + lost} found and named, {mended} repaired to the same bytes, {lost} beyond "
             f"repair (recipe and lock, by more than a bit), {wrong} wrong; {time.process_time() - start:.0f} CPU s"

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from scenegen.foundation import canonical
 from scenegen.foundation.errors import DatasetError, InputError
+from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.clip_lines import ClipLines
 from scenegen_datasets.description import MAX_BYTES, description_of
 from scenegen_datasets.documents import CLIP
@@ -63,6 +64,22 @@ class Source:
         if wrong:
             raise DatasetError(f"{CLIPS}: line {clip + 1} is not a clip ({wrong}); run `scenegen verify`")
         return facts
+
+    def record(self, clip: int) -> ClipRecord:
+        """The same facts as what a clip was made with.
+
+        Raises
+        ------
+        DatasetError
+            As `facts`, or if no clip can have such a record.
+        """
+        known = ClipRecord.__dataclass_fields__.keys()
+        try:
+            return ClipRecord.from_dict({k: v for k, v in self.facts(clip).items() if k in known})
+        except (KeyError, TypeError, ValueError) as error:
+            raise DatasetError(
+                f"{CLIPS}: line {clip + 1} is not a clip ({type(error).__name__}: {error}); run `scenegen verify`"
+            ) from None
 
 
 def open_source(root: Root, allow_partial: bool, files: Files | None = None) -> Source:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -158,7 +157,7 @@ def _opened(source: Path) -> tuple[dict[str, Any], list[ClipJob]]:
         )
     if read_description(source / DATASET)["missing"]:
         raise InputError(f"{source} lacks clips of its plan; make them first (scenegen repair)")
-    return lock, [ClipJob(**json.loads(line)["job"]) for line in stored.lines]
+    return lock, [stored.record(clip).job for clip in range(len(stored.lines))]
 
 
 def _lock(old: Mapping[str, Any], chosen: NewCamera, seed: int, out: Path) -> dict[str, Any]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -54,12 +53,9 @@ class Part:
             If it is damaged.
         """
         lock, description = read_lock(root), finished_description(root)
-        known = ClipRecord.__dataclass_fields__.keys()
-        clips = []
-        for line in open_source(root, allow_partial=False).lines:
-            facts = json.loads(line)
-            clips.append(ClipRecord.from_dict({k: v for k, v in facts.items() if k in known}))
-        return cls(root, lock, description, tuple(clips), tuple(origin_of(lock, c.job) for c in clips))
+        source = open_source(root, allow_partial=False)
+        clips = tuple(source.record(clip) for clip in range(len(source.lines)))
+        return cls(root, lock, description, clips, tuple(origin_of(lock, c.job) for c in clips))
 
     @property
     def worlds(self) -> tuple[World, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import tracemalloc
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -11,10 +12,12 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from hostile.documents import agree, index_header
+from hostile.documents import agree, clips, index_header
 from hostile.members import FOREIGN, foreign_header
+from scenegen.foundation.canonical import canonical
 from scenegen.foundation.errors import DatasetError
 from scenegen_datasets import PairDataset, tar
+from scenegen_datasets.clip import ClipRecord
 from scenegen_datasets.manifest import listable, read_manifest
 from scenegen_datasets.push import push
 from scenegen_datasets.receipt import read_receipt
@@ -165,3 +168,16 @@ def test_what_lies_behind_a_link_is_not_pushed(dataset: Path, tmp_path: Path) ->
     (dataset / "shards/val").symlink_to(tmp_path / "elsewhere")
     with pytest.raises(DatasetError, match=r"missing \(or not a plain file\); run `scenegen repair`"):
         push(dataset, f"file://{tmp_path}/there")
+
+
+@pytest.mark.parametrize("seed", range(25))
+def test_a_forged_clip_has_a_sound_record_or_none(dataset: Path, seed: int) -> None:
+    """Nothing else is raised, and what passes can be written again: those who merge or sense it write it."""
+    clips(dataset, np.random.default_rng(seed))
+    try:
+        source = open_source(dataset, allow_partial=False)
+        for k in range(len(source.lines)):
+            record = source.record(k)
+            assert ClipRecord.from_dict(json.loads(canonical(record.to_dict()))) == record
+    except DatasetError as error:
+        assert "clips.jsonl" in str(error)
