@@ -39,6 +39,9 @@ _SHARES = (1.0, 0.6, 0.3)
 """Speeds tried, as shares of the fastest from which one can stop."""
 _AHEAD = 5.0
 """A direction that is free for so many stopping ways is as good as one without end."""
+_DEAD_END, _SWERVE, _SLOW = 1.5, 0.3, 0.5
+"""What weighs against a direction, beside its angle off the goal [rad]: that it ends here, each radian off the last
+decision, and standing still instead of cruising."""
 _SEARCH = 0.35
 """How much more slowly the drone flies across its way."""
 _GLANCE_RAD = math.radians(25.0)
@@ -147,11 +150,11 @@ class Waypoint:
         range_m = np.minimum(range_m, np.maximum(room, 0.0))
         enough = min(left, _AHEAD * self._reach_m)
         off = np.arccos(np.clip(direction @ way / max(left, 1e-9), -1.0, 1.0))
-        cost = off + 1.5 * np.maximum(1.0 - range_m / enough, 0.0)
+        cost = off + _DEAD_END * np.maximum(1.0 - range_m / enough, 0.0)
         if own.detour is not None:
             cost += own.detour.cost(direction, way)
         if own.heading is not None:
-            cost += 0.3 * np.arccos(np.clip(direction @ own.heading, -1.0, 1.0))
+            cost += _SWERVE * np.arccos(np.clip(direction @ own.heading, -1.0, 1.0))
         # Beside the way one searches: slowly enough to see what opens.
         cruise = min(knobs.cruise_mps, max(1.5, left)) * (
             1.0 - _SEARCH * np.minimum(off / (0.5 * np.pi), 1.0) ** 2
@@ -162,7 +165,7 @@ class Waypoint:
         best = best[np.isfinite(cost[best])]
         share = np.array(_SHARES)
         velocity = (direction[best] * speed[best, None])[:, None] * share[:, None]
-        total = cost[best, None] + 0.5 * (1.0 - share * speed[best, None] / knobs.cruise_mps)
+        total = cost[best, None] + _SLOW * (1.0 - share * speed[best, None] / knobs.cruise_mps)
         order = np.argsort(total.ravel(), kind="stable")
         return _Choice(velocity.reshape(-1, 3)[order], total.ravel()[order])
 

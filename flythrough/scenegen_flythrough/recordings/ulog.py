@@ -32,15 +32,14 @@ def read_ulog(path: Path) -> Recording:
         pyulog = import_module("pyulog")  # optional: only who flies a .ulg needs it
     except ImportError as error:
         raise InputError(
-            f"{path}: reading .ulg takes pyulog; pip install pyulog, or convert to CSV"
+            f"{path}: reading .ulg takes pyulog; pip install 'thermal-scenegen[ulog]', or convert it to CSV"
         ) from error
     topics = ["vehicle_local_position", "vehicle_attitude"]
     try:
         log = pyulog.ULog(str(path), topics)
         position, attitude = (_first(log, name) for name in topics)
-    except (
-        Exception
-    ) as error:  # pyulog raises bare Exceptions, KeyErrors, struct errors ... for damaged files
+    except Exception as error:
+        # pyulog raises bare Exceptions, KeyErrors, struct errors ... for damaged files
         raise InputError(f"{path}: not a ULog file that pyulog can read ({error})") from error
     for name, data in zip(topics, (position, attitude), strict=True):
         if data is None or len(data["timestamp"]) < 2:

@@ -217,7 +217,7 @@ def test_a_log_that_cannot_be_read_says_why(ulog: Path, monkeypatch: pytest.Monk
     with pytest.raises(InputError, match="not a ULog file"):
         identity(str(ulog))
     monkeypatch.setitem(sys.modules, "pyulog", None)
-    with pytest.raises(InputError, match="pip install pyulog"):
+    with pytest.raises(InputError, match=r"pip install 'thermal-scenegen\[ulog\]'"):
         identity(str(ulog))
 
 
