@@ -83,6 +83,8 @@ class Epoch:
 
     def __iter__(self) -> Iterator[int]:
         order = self.order()
+        if not len(order):  # more ranks than samples: this pass is over, and the next may have some for this rank
+            self.finish()
         for index in order[self.position :]:
             self.advance(1)
             yield int(index)
@@ -109,15 +111,18 @@ class Epoch:
         return {**self._settings, "epoch": self.epoch, "position": self.position}
 
     def load_state_dict(self, state: Mapping[str, Any]) -> None:
-        """Continue where `state_dict` was taken.
+        """Continue where `state_dict` was taken, on this rank or, with `even`, on any: even ranks move in step.
 
         Raises
         ------
         InputError
             If it was taken of another dataset or other settings: the continuation would not be exact.
         """
+        of_any = (
+            ("rank",) if self._settings["even"] else ()
+        )  # checkpoints hold the position of the first rank
         for name, value in self._settings.items():
-            if state.get(name) != value:
+            if name not in of_any and state.get(name) != value:
                 raise InputError(
                     f"the position was saved with {name} {state.get(name)}, this order has {value}; "
                     "use the same settings, or start a new pass"

@@ -142,6 +142,9 @@ class PairLoader:
 
     def __iter__(self) -> Iterator[Any]:
         left = self._batches.number(len(self.epoch) - self.epoch.position)
+        if not left:
+            self.epoch.finish()
+            return
         for batch in self._loader:
             left -= 1
             if left:

@@ -74,12 +74,39 @@ def test_a_loader_with_workers_continues_where_its_user_was(pristine: Path) -> N
     assert keys(resumed) == whole[1][8:] and keys(resumed) == whole[2]
 
 
+@pytest.mark.parametrize("drop_last", [False, True])
+def test_the_order_and_the_position_know_nothing_of_workers(pristine: Path, drop_last: bool) -> None:
+    """Stop behind every batch with one number of workers, go on with another."""
+    from scenegen_datasets.adapters.torch import PairLoader
+
+    def loader(workers: int) -> PairLoader:
+        pairs = PairDataset(pristine, layers=())
+        return PairLoader(pairs, 5, workers=workers, seed=8, spawn=False, drop_last=drop_last)
+
+    straight = loader(0)
+    whole = [keys(straight) for _ in range(2)]
+    for stop, (before, after) in enumerate(((0, 2), (2, 0), (1, 2)), 1):
+        first = loader(before)
+        assert keys(first, stop) == whole[0][: 5 * stop]
+        second = loader(after)
+        second.load_state_dict(json.loads(json.dumps(first.state_dict())))
+        assert keys(second) == (whole[0][5 * stop :] or whole[1])
+        assert keys(second)[:5] == (whole[1] if 5 * stop < len(whole[0]) else keys(straight))[:5]
+
+
 def test_ranks_and_full_batches(pristine: Path) -> None:
     from scenegen_datasets.adapters.torch import PairLoader
 
     pairs = PairDataset(pristine)
     found = [keys(PairLoader(pairs, 4, rank=r, ranks=2, clips_at_once=2, drop_last=True)) for r in (0, 1)]
     assert [len(one) for one in found] == [8, 8] and not set(found[0]) & set(found[1])
+
+
+def test_a_pass_without_a_batch_is_over_and_the_next_one_comes(pristine: Path) -> None:
+    from scenegen_datasets.adapters.torch import PairLoader
+
+    loader = PairLoader(PairDataset(pristine, "val", ()), 7, drop_last=True)
+    assert (keys(loader), keys(loader), loader.epoch.epoch) == ([], [], 2)
 
 
 class Kept:
@@ -158,6 +185,25 @@ def test_webdataset_decodes_every_member_exactly(pristine: Path) -> None:
             assert mine[name].dtype == sample[name].dtype
             np.testing.assert_array_equal(mine[name], sample[name])
         np.testing.assert_array_equal(mine["world_from_camera"], sample["world_from_camera"])
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_webdataset_deals_shards_to_nodes_and_workers_once(
+    pristine: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    webdataset = pytest.importorskip("webdataset")
+    urls = sorted(map(str, pristine.rglob("*.tar")))
+
+    def seen(node: int, worker: int) -> list[str]:
+        place = {"RANK": node, "WORLD_SIZE": 2, "WORKER": worker, "NUM_WORKERS": 3}
+        for name, value in place.items():
+            monkeypatch.setenv(name, str(value))
+        stream = webdataset.WebDataset(urls, shardshuffle=9, seed=1, nodesplitter=webdataset.split_by_node)
+        return [sample["__key__"] for sample in stream]
+
+    found = [key for node in range(2) for worker in range(3) for key in seen(node, worker)]
+    frames = PairDataset(pristine)._source.rows
+    assert len(found) == len(set(found)) == len(frames) == 24
 
 
 def test_the_decoder_leaves_strangers_alone_and_refuses_damage(pristine: Path) -> None:

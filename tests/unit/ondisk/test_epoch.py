@@ -7,6 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from scenegen.foundation.errors import InputError
 from scenegen_datasets import PairDataset
@@ -92,16 +94,53 @@ def test_a_saved_position_continues_exactly(clips_at_once: int, stop: int) -> No
     assert taken(resumed, 80 - stop) == whole[stop:]
 
 
+@settings(max_examples=60, deadline=None)
+@given(
+    clips=st.lists(st.integers(0, 9), min_size=1, max_size=8).filter(sum),
+    seed=st.integers(0, 2**32),
+    ranks=st.integers(1, 4),
+    at_once=st.integers(0, 3),
+    shuffle=st.booleans(),
+    taken=st.integers(0, 60),
+)
+def test_any_rank_goes_on_from_the_position_of_the_first(
+    clips: list[int], seed: int, ranks: int, at_once: int, shuffle: bool, taken: int
+) -> None:
+    """What a checkpoint of many ranks holds: rank 0 alone writes it, all of them read it."""
+
+    def orders() -> list[Epoch]:
+        named = {"shuffle": shuffle, "clips_at_once": at_once, "ranks": ranks}
+        return [Epoch(Clips(*clips), seed, rank=r, **named) for r in range(ranks)]
+
+    straight, resumed = orders(), orders()
+    length = len(straight[0])
+    assert {len(order) for order in straight} == {length}
+    stop = taken % length if length else 0
+    whole = [list(order.order()) for order in straight]
+    flat = [index for order in whole for index in order]
+    assert len(set(flat)) == len(flat), "no sample in two ranks"
+    straight[0].advance(stop) if stop else None
+    state = json.loads(json.dumps(straight[0].state_dict()))
+    for order, all_of_it in zip(resumed, whole, strict=True):
+        order.load_state_dict(state)
+        assert list(order) == all_of_it[stop:]
+    assert {order.epoch for order in resumed} == {1}, "all ranks begin the next pass together"
+
+
 def test_a_position_of_other_settings_is_refused() -> None:
     state = Epoch(CLIPS, 9).state_dict()
     for other in (
         Epoch(CLIPS, 8),
         Epoch(range(49), 9),
         Epoch(CLIPS, 9, ranks=2),
+        Epoch(CLIPS, 9, even=False),
         Epoch(CLIPS, 9, shuffle=False),
     ):
         with pytest.raises(InputError, match="the position was saved with"):
             other.load_state_dict(state)
+    uneven = Epoch(CLIPS, 9, rank=1, ranks=2, even=False)
+    with pytest.raises(InputError, match="saved with rank 0"):
+        uneven.load_state_dict(Epoch(CLIPS, 9, ranks=2, even=False).state_dict())
     with pytest.raises(InputError, match="rank 2 of 2"):
         Epoch(CLIPS, rank=2, ranks=2)
     with pytest.raises(InputError, match="clips_at_once"):
