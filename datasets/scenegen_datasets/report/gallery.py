@@ -14,16 +14,14 @@ from scenegen_datasets.pages.axes import Frame, log_ticks, tick_words
 from scenegen_datasets.pages.charts import key
 from scenegen_datasets.pages.markup import Html, element, join, picture, text
 from scenegen_datasets.pictures import colour
+from scenegen_datasets.pictures.ramp import Ramp, depth_ramp, thermal_ramp
 from scenegen_datasets.pictures.shot import Shot
 from scenegen_datasets.report.media import (
     FLIGHT_BYTES,
     Film,
-    Ramp,
     Tile,
     common_range,
-    depth_ramp,
     flight_within,
-    thermal_ramp,
     tiles,
 )
 from scenegen_datasets.report.selection import Selection
@@ -96,8 +94,7 @@ def _under(film: Film) -> Html:
 
 def _ramp(ramp: Ramp) -> Html:
     """A bar of colours between its two ends."""
-    colours = ",".join(_css(rgb) for rgb in ramp.colours)
-    bar = element("i", style=f"background:linear-gradient(90deg,{colours})")
+    bar = element("i", style=f"background:{ramp.css}")
     return element("div", ramp.low, bar, ramp.high, class_="ramp")
 
 

@@ -6,7 +6,7 @@ from scenegen_datasets.audits.histogram import Histogram, Spread
 from scenegen_datasets.audits.labels import FLOW_BAR_PX, LabelConsistency
 from scenegen_datasets.audits.leak import DepthLeak
 from scenegen_datasets.pages.charts import LARGE, Curve, curves, histogram, key, share_bar
-from scenegen_datasets.pages.markup import Html, folded
+from scenegen_datasets.pages.markup import Html, element, folded
 from scenegen_datasets.pages.sheet import SERIES
 from scenegen_datasets.pages.tables import Column, number, table
 from scenegen_datasets.report.words import bars, card, cards, figures, note, plain, said
@@ -55,12 +55,10 @@ def leak(found: DepthLeak) -> Html:
     return Html(
         said(found.verdict)
         + cards(
-            card("What simple guesses explain", guesses),
-            card("Mutual information with depth", information),
-            card("Depth by grey level", key([(SERIES[0], "mean, and 68 % of the pixels")]), chart),
-            least_px=365,
+            card("What simple guesses explain", guesses, element("h3", "Mutual information"), information),
+            card("Depth by grey level", key([(SERIES[0], "mean, and 68 % of the pixels")]), chart, how),
+            least_px=460,
         )
-        + how
     )
 
 

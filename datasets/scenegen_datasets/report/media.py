@@ -10,7 +10,8 @@ import numpy as np
 from PIL import Image
 
 from scenegen_datasets.pictures.animation import Scales, animate, flight_frame, shown_layers
-from scenegen_datasets.pictures.colour import Picture, colormap
+from scenegen_datasets.pictures.colour import Picture
+from scenegen_datasets.pictures.ramp import Ramp, thermal_ramp
 from scenegen_datasets.pictures.scales import Tone, depth_range, flow_range, tile
 from scenegen_datasets.pictures.shot import Shot
 
@@ -20,16 +21,6 @@ FLIGHT_BYTES = 4_200_000
 _QUALITY = 82
 _IDS = ("semantic", "instance")
 _LEAST_FRAMES = 4
-_RAMP_STOPS = 12
-
-
-@dataclass(frozen=True)
-class Ramp:
-    """A bar of colours and what its two ends stand for."""
-
-    low: str
-    high: str
-    colours: tuple[tuple[int, ...], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,21 +73,6 @@ def webp(image: Picture, *, exact: bool = False) -> bytes:
         file, "WEBP", quality=_QUALITY, method=4, lossless=exact
     )
     return file.getvalue()
-
-
-def thermal_ramp(tone: Tone) -> Ramp:
-    """Greys of a gain between its two temperatures, evenly in counts."""
-    greys = tone.ramp(_RAMP_STOPS).tolist()
-    return Ramp(
-        f"{tone.low_K:.1f}\u00a0K", f"{tone.high_K:.1f}\u00a0K", tuple((grey, grey, grey) for grey in greys)
-    )
-
-
-def depth_ramp(span_m: tuple[float, float]) -> Ramp:
-    """Colours of distances, near first; logarithmic."""
-    stops = np.linspace(255, 0, _RAMP_STOPS).round().astype(int)
-    colours = tuple(tuple(map(int, colormap()[stop])) for stop in stops)
-    return Ramp(f"{span_m[0]:g}\u00a0m", f"{span_m[1]:g}\u00a0m", colours)
 
 
 def flight_within(shots: Sequence[Shot], most_bytes: int) -> Film:

@@ -11,7 +11,9 @@ import numpy as np
 from jaxtyping import Float, UInt8
 from numpy.typing import NDArray
 
+from scenegen.classes import CLASSES
 from scenegen_datasets.pictures import colour
+from scenegen_datasets.pictures.ramp import STOPS, Ramp, depth_ramp, ramp_of
 from scenegen_datasets.pictures.scales import MAX_GAIN
 from scenegen_datasets.view.library import Still
 from scenegen_render.sensor.agc import percentile_agc, plateau_agc
@@ -26,6 +28,7 @@ GAINS: Mapping[Gain, str] = {
 }
 """Gain controls of the thermal picture."""
 
+_KEY = 8
 PALETTES: tuple[Palette, ...] = ("white hot", "black hot", "inferno")
 
 
@@ -63,10 +66,22 @@ class Ranges:
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """A picture and its caption."""
+    """A picture and what its colours mean.
+
+    Attributes
+    ----------
+    picture : uint8 (rows, columns, 3)
+    caption : str
+    ramp : Ramp, optional
+        Of values on one axis.
+    key : tuple of ((red, green, blue), str)
+        Of names, the commonest in the picture first.
+    """
 
     picture: UInt8[np.ndarray, "rows columns 3"]
     caption: str
+    ramp: Ramp | None = None
+    key: tuple[tuple[tuple[int, ...], str], ...] = ()
 
 
 def panel(still: Still, layer: str, ranges: Ranges, gain: Gain, palette: Palette) -> Panel:
@@ -102,7 +117,10 @@ def _thermal(still: Still, ranges: Ranges, gain: Gain, palette: Palette) -> Pane
     else:
         low, high = ranges.thermal_K
         grey = _stretched(still.brightness_K, low, high)
-    return Panel(_toned(grey, palette), f"{palette}, {low:.1f} to {high:.1f} K; {GAINS[gain]}")
+    kelvin, first = np.unique(still.brightness_K, return_index=True)
+    levels = np.interp(np.linspace(low, high, STOPS), kelvin, grey.ravel()[first].astype(np.float64))
+    bar = _toned(np.rint(levels)[None].astype(np.uint8), palette)[0]
+    return Panel(_toned(grey, palette), GAINS[gain], ramp_of(f"{low:.1f} K", f"{high:.1f} K", bar))
 
 
 def _toned(grey: UInt8[np.ndarray, "rows columns"], palette: Palette) -> UInt8[np.ndarray, "rows columns 3"]:
@@ -113,22 +131,25 @@ def _toned(grey: UInt8[np.ndarray, "rows columns"], palette: Palette) -> UInt8[n
 
 def _depth(values: NDArray[Any], ranges: Ranges) -> Panel:
     low, high = ranges.depth_m
-    return Panel(
-        colour.depth(values, low, high), f"{low:g} m bright to {high:g} m dark, logarithmic; sky blue-grey"
-    )
+    return Panel(colour.depth(values, low, high), "logarithmic; sky blue-grey", depth_ramp((low, high)))
 
 
 def _temperature(values: NDArray[Any], ranges: Ranges) -> Panel:
     low, high = ranges.temperature_K
     picture = np.asarray(cv2.applyColorMap(_stretched(values, low, high), cv2.COLORMAP_INFERNO)[..., ::-1])
     picture = np.where((values > 0)[..., None], picture, np.array(colour.SKY_COLOUR, np.uint8))
-    return Panel(picture, f"kinetic, {low:.1f} K dark to {high:.1f} K bright; sky blue-grey")
+    return Panel(
+        picture,
+        "kinetic, one range for the clip; sky blue-grey",
+        ramp_of(f"{low:.1f} K", f"{high:.1f} K", _bar("inferno")),
+    )
 
 
 def _radiance(values: NDArray[Any], ranges: Ranges) -> Panel:
     low, high = (float(x) for x in np.percentile(values, (0.5, 99.5)))
     grey = _stretched(values, low, high)
-    return Panel(_toned(grey, "white hot"), f"noise-free, {low:.2f} to {high:.2f} W m⁻² sr⁻¹")
+    ends = f"{low:.2f}", f"{high:.2f} W m⁻² sr⁻¹"
+    return Panel(_toned(grey, "white hot"), "noise-free", ramp_of(*ends, _bar("white hot")))
 
 
 def _flow(values: NDArray[Any], ranges: Ranges) -> Panel:
@@ -142,7 +163,13 @@ def _ids(values: NDArray[Any], ranges: Ranges) -> Panel:
 
 
 def _semantic(values: NDArray[Any], ranges: Ranges) -> Panel:
-    return Panel(colour.semantic(values), "class colours of dataset.json")
+    counts = np.bincount(values.ravel(), minlength=len(CLASSES))
+    common = [k for k in np.argsort(-counts, kind="stable").tolist() if counts[k]][:_KEY]
+    key = tuple(
+        (tuple(CLASSES[k].colour) if k else colour.SKY_COLOUR, CLASSES[k].name.replace("_", " "))
+        for k in common
+    )
+    return Panel(colour.semantic(values), "the commonest classes of the frame", key=key)
 
 
 def _mask(values: NDArray[Any], ranges: Ranges) -> Panel:
@@ -170,6 +197,10 @@ _DRAWN: Mapping[str, Callable[[NDArray[Any], Ranges], Panel]] = {
     "covisible_back": _mask,
     "normal": _normal,
 }
+
+
+def _bar(palette: Palette) -> UInt8[np.ndarray, "colours 3"]:
+    return _toned(np.linspace(0, 255, STOPS).round().astype(np.uint8)[None], palette)[0]
 
 
 def _stretched(

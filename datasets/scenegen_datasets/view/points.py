@@ -39,3 +39,20 @@ def frustum(still: Still, length_m: float) -> Float64[np.ndarray, "5 3"]:
     seen = np.linalg.solve(still.K, corners) * length_m
     eye = still.world_from_camera[:3, 3]
     return np.vstack([eye, (still.world_from_camera[:3, :3] @ seen).T + eye])
+
+
+def edges(
+    corners: Float64[np.ndarray, "5 3"],
+) -> list[tuple[Float64[np.ndarray, "3"], Float64[np.ndarray, "3"]]]:
+    """Lines of a frustum: four rays, the picture's rim, and a roof above its upper edge."""
+    eye, left, right = corners[0], corners[1], corners[2]
+    down = corners[4] - corners[1]
+    ridge = (left + right) / 2.0 - 0.25 * down
+    rim = [(corners[1 + k], corners[1 + (k + 1) % 4]) for k in range(4)]
+    return [*((eye, corner) for corner in corners[1:]), *rim, (left, ridge), (ridge, right)]
+
+
+def linear(colours: UInt8[np.ndarray, "points 3"]) -> Float64[np.ndarray, "points 3"]:
+    """Colours of a picture (sRGB, IEC 61966-2-1) as the shares of light that a renderer of scenes reckons in."""
+    shares = colours.astype(np.float64) / 255.0
+    return np.where(shares <= 0.04045, shares / 12.92, ((shares + 0.055) / 1.055) ** 2.4)

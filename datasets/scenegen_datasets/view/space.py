@@ -10,20 +10,27 @@ from jaxtyping import Float64, UInt8
 from nicegui import ui
 
 from scenegen_datasets.view.library import Still
-from scenegen_datasets.view.points import back_projected, frustum
+from scenegen_datasets.view.points import back_projected, edges, frustum, linear
 
-_BACKGROUND, _FLIGHT, _CAMERA = "#14171c", "#4ea1ff", "#ffb000"
+_BACKGROUND, _FLIGHT, _CAMERA = "#0d1015", "#4ea1ff", "#ffb000"
+_FAR_M = 20_000.0
 _REACH = 3.0  # times the median distance: nearer pixels are drawn
-_POINT = 0.005  # of the reach: a point a few pixels wide
+_POINT = 0.009  # of the reach: neighbouring points nearly touch
 
 
 class Space:
-    """A scene in three dimensions; x east, y north, z up, as the dataset has it, from the flight's middle."""
+    """A scene in three dimensions; x east, y north, z up, as the dataset has it, from the flight's middle.
+
+    A roof above the picture's upper edge tells which side of the camera is up.
+    """
 
     def __init__(self) -> None:
-        with ui.scene(width=1200, height=520, grid=False, background_color=_BACKGROUND) as scene:
+        camera = ui.scene.perspective_camera(near=0.2, far=_FAR_M)
+        with ui.scene(
+            width=640, height=480, grid=False, background_color=_BACKGROUND, camera=camera
+        ) as scene:
             self._scene = scene
-        scene.classes("w-full").mark("space")
+        scene.classes("space").mark("space")
         self._origin: Float64[np.ndarray, "3"] = np.zeros(3)
         self._flight: list[Any] = []
         self._frame: list[Any] = []
@@ -32,9 +39,7 @@ class Space:
     def show_flight(self, poses: Float64[np.ndarray, "frames 4 4"]) -> None:
         """Draw a flight and look at its middle from behind and above."""
         self._clear(self._flight)
-        if self._cloud is not None:
-            self._clear([self._cloud])
-            self._cloud = None  # the size of its points suits one flight
+        self.show_nothing()  # the size of the points suits one flight
         places = poses[:, :3, 3]
         self._origin = places.mean(axis=0)
         places = places - self._origin
@@ -53,17 +58,21 @@ class Space:
         reach_m = _REACH * float(np.median(seen)) if seen.size else 1.0
         points, colours = back_projected(still, picture, reach_m)
         corners = frustum(still, 0.1 * reach_m) - self._origin
-        places, shades = np.round(points - self._origin, 3).tolist(), np.round(colours / 255.0, 3).tolist()
+        places, shades = np.round(points - self._origin, 3).tolist(), np.round(linear(colours), 4).tolist()
         with self._scene:
             if self._cloud is None:
                 self._cloud = self._scene.point_cloud(places, shades, point_size=_POINT * reach_m)
             else:
                 self._cloud.set_points(places, shades)
-            for k in range(1, 5):
-                following = corners[1 + k % 4]
-                for end in (corners[0], following):
-                    line = self._scene.line(corners[k].tolist(), end.tolist()).material(_CAMERA)
-                    self._frame.append(line)
+            for a, b in edges(corners):
+                self._frame.append(self._scene.line(a.tolist(), b.tolist()).material(_CAMERA))
+
+    def show_nothing(self) -> None:
+        """Take camera and points away."""
+        self._clear(self._frame)
+        if self._cloud is not None:
+            self._clear([self._cloud])
+            self._cloud = None
 
     def _clear(self, drawn: list[Any]) -> None:
         for thing in drawn:
