@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.words import counted
 from scenegen.maps.own_scene.own_scene import describe
 from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
@@ -195,9 +196,9 @@ def _plan_in_words(campaign: Campaign) -> str:
     camera = campaign.recipe.dataset.camera
     swept = f" at {len(campaign.points)} points" if campaign.swept else ""
     return (
-        f"{campaign.total:,} flights of {', '.join(spec.name for spec in campaign.pilots)}{swept} through "
-        f"{worlds} world{'s' if worlds > 1 else ''} ({', '.join(campaign.recipe.dataset.map)}), "
-        f"{camera.width_px}x{camera.height_px}, {campaign.processes} process{'es' if campaign.processes > 1 else ''}"
+        f"{counted(campaign.total, 'flight')} of {', '.join(spec.name for spec in campaign.pilots)}{swept} through "
+        f"{counted(worlds, 'world')} ({', '.join(campaign.recipe.dataset.map)}), "
+        f"{camera.width_px}x{camera.height_px}, {counted(campaign.processes, 'process')}"
     )
 
 

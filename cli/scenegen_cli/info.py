@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+from scenegen.foundation.words import counted
 from scenegen_cli.console import say, say_json, size, table
 from scenegen_cli.parse import parse
 
@@ -47,7 +48,8 @@ def _rows(found: DatasetInfo) -> list[tuple[str, str]]:
         ("state", _state(found)),
         (
             "pairs",
-            f"{found.pairs:,} in {found.clips:,} clips of {found.worlds:,} worlds ({found.frames:,} frames)",
+            f"{found.pairs:,} in {counted(found.clips, 'clip')} of {counted(found.worlds, 'world')} "
+            f"({found.frames:,} frames)",
         ),
         ("splits", ", ".join(f"{name} {count:,}" for name, count in found.splits.items())),
         *_listed("held out", found.held_out or ("nothing but worlds",)),

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.words import counted
 from scenegen_cli.console import note, say, say_json, size
 from scenegen_cli.leaving import TerminatedError
 from scenegen_cli.progress import Meter
@@ -96,9 +97,9 @@ def plan_in_words(job: Job) -> str:
     worlds = len({(clip.map, clip.world) for clip in clips})
     camera = job.recipe.camera
     return (
-        f"{job.pairs:,} pairs of {camera.width_px}x{camera.height_px} in {len(clips):,} clips from {worlds:,} "
-        f"world{'s' if worlds > 1 else ''} ({', '.join(job.recipe.map)}), about {size(job.bytes)}, "
-        f"{job.processes} process{'es' if job.processes > 1 else ''}"
+        f"{counted(job.pairs, 'pair')} of {camera.width_px}x{camera.height_px} in {counted(len(clips), 'clip')} from "
+        f"{counted(worlds, 'world')} ({', '.join(job.recipe.map)}), about {size(job.bytes)}, "
+        f"{counted(job.processes, 'process')}"
     )
 
 
@@ -113,7 +114,7 @@ def _words(outcome: Outcome, report: VerifyReport | None) -> str:
     info = outcome.info
     splits = ", ".join(f"{count:,} {name}" for name, count in info.splits.items() if count)
     wrong = len(_unexpected(outcome, report))
-    checked = "" if report is None else f", {wrong} findings" if wrong else ", verified"
+    checked = "" if report is None else f", {counted(wrong, 'finding')}" if wrong else ", verified"
     if info.missing:
         checked += f", without {len(info.missing)} of {info.clips + len(info.missing)} clips"
     return f"{info.name} {info.version}: {info.pairs:,} pairs ({splits}), {size(info.bytes)}{checked}"

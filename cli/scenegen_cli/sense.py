@@ -10,6 +10,7 @@ from typing import Annotated
 import tyro
 
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.words import counted
 from scenegen_cli.console import say, say_json, size
 from scenegen_cli.parse import parse, parse_size, split_recipe_flags
 from scenegen_datasets.resolve import leaves
@@ -69,6 +70,7 @@ def run(arguments: Sequence[str]) -> int:
         return 0
     blocks = f", {done.side}x{done.side} stored pixels each" if done.side > 1 else ""
     say(
-        f"{command.out}: {done.info.pairs:,} pairs in {done.info.clips:,} clips{blocks}, {size(done.info.bytes)}"
+        f"{command.out}: {counted(done.info.pairs, 'pair')} in {counted(done.info.clips, 'clip')}{blocks}, "
+        f"{size(done.info.bytes)}"
     )
     return 0

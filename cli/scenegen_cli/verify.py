@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.words import counted
 from scenegen_cli.console import note, say, say_json, size
 from scenegen_cli.parse import parse
 
@@ -66,8 +67,9 @@ def run(arguments: Sequence[str]) -> int:
         say(f"{finding.file}: {finding.reason}")
     if len(findings) > SHOWN:
         say(f"... and {len(findings) - SHOWN} more (--json lists all)")
-    what = f"{len(findings)} findings" if findings else "ok"
-    say(f"{what}: {report.clips:,} clips, {report.frames:,} frames, {size(report.bytes)}{_again(again)}")
+    what = counted(len(findings), "finding") if findings else "ok"
+    looked_at = f"{counted(report.clips, 'clip')}, {counted(report.frames, 'frame')}, {size(report.bytes)}"
+    say(f"{what}: {looked_at}{_again(again)}")
     if command.rerender and again is None:
         note("nothing was rendered again, because of what was found; `scenegen repair` puts it right")
     return 1 if findings else 0

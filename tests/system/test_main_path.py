@@ -145,7 +145,7 @@ def test_commands_on_a_dataset(
     for arguments in (["info"], ["status"], ["verify", "--quick"], ["preview"]):
         assert main([arguments[0], str(finished_dataset), *arguments[1:]]) == 0
     said = capsys.readouterr().out
-    assert "16 in 4 clips of 1 worlds (20 frames)" in said
+    assert "16 in 4 clips of 1 world (20 frames)" in said
     assert "16 of 16 (100 %)" in said
     assert main(["preview", str(finished_dataset), "--out", str(tmp_path)]) == 0
     assert (tmp_path / "contact_sheet.png").read_bytes() == (

@@ -5,6 +5,7 @@ from typing import Any
 import pytest
 
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.words import counted
 from scenegen_cli.console import size, span, table
 from scenegen_cli.parse import parse, parse_size, split_recipe_flags
 from scenegen_cli.render import Render
@@ -79,3 +80,8 @@ def test_words_for_people() -> None:
     assert [size(n) for n in (0, 999, 1500, 2.5e9, 7e12)] == ["0 B", "999 B", "1.5 kB", "2.5 GB", "7.0 TB"]
     assert [span(s) for s in (0.2, 59, 187, 3753)] == ["0 s", "59 s", "3:07", "1:02:33"]
     assert table([("a", "bb"), ("ccc", "d")]) == "a    bb\nccc  d"
+
+
+def test_numbers_in_sentences() -> None:
+    assert [counted(n, "clip") for n in (0, 1, 1234)] == ["0 clips", "1 clip", "1,234 clips"]
+    assert counted(2, "process") == "2 processes"
