@@ -200,7 +200,8 @@ _DRAWN: Mapping[str, Callable[[NDArray[Any], Ranges], Panel]] = {
 
 
 def _bar(palette: Palette) -> UInt8[np.ndarray, "colours 3"]:
-    return _toned(np.linspace(0, 255, STOPS).round().astype(np.uint8)[None], palette)[0]
+    greys = np.linspace(0, 255, STOPS).round().astype(np.uint8)
+    return np.asarray(_toned(greys[None], palette)[0])
 
 
 def _stretched(

@@ -10,6 +10,9 @@ from scenegen.foundation.errors import ScenegenError
 from scenegen_datasets.view.gallery import ROUTE, Gallery
 from scenegen_datasets.view.page import Page
 
+_PATIENCE_S = 30.0
+"""A busy machine may be slow to answer; a page that is given up starts from its first frame again."""
+
 
 def run(gallery: Gallery, host: str, port: int, *, show: bool) -> None:
     """Serve until interrupted.
@@ -45,5 +48,6 @@ def run(gallery: Gallery, host: str, port: int, *, show: bool) -> None:
         title=f"{gallery.library.root.name} - thermal-scenegen",
         show=show,
         reload=False,
+        reconnect_timeout=_PATIENCE_S,
         show_welcome_message=False,
     )

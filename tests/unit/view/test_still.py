@@ -6,7 +6,7 @@ import pytest
 from scenegen.classes import CLASSES
 from scenegen_datasets.view.library import Still
 from scenegen_datasets.view.panels import Ranges, drawable, panel
-from scenegen_datasets.view.points import back_projected, frustum
+from scenegen_datasets.view.points import back_projected, edges, frustum, linear
 from scenegen_datasets.view.readout import readout
 
 ROWS, COLUMNS = 12, 16
@@ -79,6 +79,34 @@ def test_the_frustum_starts_at_the_camera() -> None:
     np.testing.assert_allclose(corners[0], [100, 200, 30])
     np.testing.assert_allclose(corners[1:, 1], 202.0)
     np.testing.assert_allclose(corners[1, [0, 2]], [100 - 0.8, 30 + 0.6])  # upper left
+
+
+def test_the_roof_of_the_frustum_is_above_the_pictures_upper_edge() -> None:
+    lines = edges(frustum(still(), 2.0))
+    assert len(lines) == 10
+    ends = np.array([b for _, b in lines[:4]])
+    ridge = lines[-1][0]
+    np.testing.assert_allclose(ridge, [100, 202, 30 + 0.6 + 0.25 * 1.2])
+    assert ridge[2] > ends[:, 2].max()
+
+
+def test_points_are_shaded_in_linear_light() -> None:
+    shares = linear(np.array([[0, 128, 255], [10, 188, 55]], np.uint8))
+    np.testing.assert_allclose(shares[0], [0.0, 0.21586, 1.0], atol=1e-5)  # 128 of 255 is a fifth of the light
+    np.testing.assert_allclose(shares[1], [0.003035, 0.50289, 0.03820], atol=1e-5)
+
+
+def test_bars_run_as_the_pictures_do() -> None:
+    shown = still()
+    ranges = Ranges.of([shown])
+    thermal = panel(shown, "thermal", ranges, "linear", "white hot").ramp
+    assert thermal is not None and thermal.colours[0][0] < 5 and thermal.colours[-1][0] > 250
+    assert thermal.css.startswith("linear-gradient(90deg,rgb(") and thermal.low.endswith("K")
+    depth = panel(shown, "depth", ranges, "linear", "white hot").ramp
+    assert depth is not None and sum(depth.colours[0]) > sum(depth.colours[-1])  # near is bright
+    classes = panel(shown, "semantic", ranges, "linear", "white hot")
+    name = next(c.name for c in CLASSES if int(c.id) == 10).replace("_", " ")
+    assert [words for _, words in classes.key] == [name, "sky"]  # the commoner first
 
 
 def test_every_layer_has_a_picture_and_a_caption() -> None:
