@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from scenegen_cli.console import note, say, say_json
+from scenegen_cli.console import counted, note, say, say_json
 from scenegen_cli.parse import parse
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def run(arguments: Sequence[str]) -> int:
 def _tell(done: Repaired) -> None:
     if done.before.ok:
         healed = f"put right: {', '.join(done.healed)}" if done.healed else "nothing to repair"
-        say(f"{healed}: {done.after.clips:,} clips, {done.after.frames:,} frames are sound")
+        say(f"{healed}: {counted(done.after.clips, 'clip')}, {counted(done.after.frames, 'frame')} are sound")
         return
     for finding in done.before.findings[:SHOWN]:
         note(f"was: {finding}")
@@ -63,10 +63,6 @@ def _tell(done: Repaired) -> None:
         note(f"not repaired: {clip}: {reason}")
     for finding in done.after.findings[:SHOWN]:
         note(f"still: {finding}")
-    state = "sound again" if done.after.ok else f"{_counted(len(done.after.findings), 'finding')} left"
-    made = f", {_counted(len(done.remade), 'clip')} rendered again" if done.remade else ""
-    say(f"{state}: {_counted(len(done.before.findings), 'finding')} before{made}")
-
-
-def _counted(count: int, noun: str) -> str:
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+    state = "sound again" if done.after.ok else f"{counted(len(done.after.findings), 'finding')} left"
+    made = f", {counted(len(done.remade), 'clip')} rendered again" if done.remade else ""
+    say(f"{state}: {counted(len(done.before.findings), 'finding')} before{made}")
