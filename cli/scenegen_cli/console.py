@@ -51,11 +51,6 @@ def size(count: float) -> str:
     return f"{count:.1f} TB"
 
 
-def counted(count: int, noun: str) -> str:
-    """A number of things: 1 clip, 1,250 clips."""
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"
-
-
 def span(seconds: float) -> str:
     """Seconds as 12 s, 3:07 or 1:02:33."""
     whole = max(round(seconds), 0)

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import tyro
 
+from scenegen.foundation.words import counted
 from scenegen_cli.console import note, say, say_json, size
 from scenegen_cli.parse import parse
 
@@ -60,10 +61,16 @@ def run(arguments: Sequence[str]) -> int:
     else:
         splits = ", ".join(f"{count:,} {name}" for name, count in found.splits.items() if count)
         checked = (
-            "" if report is None else ", verified" if report.ok else f", {len(report.findings)} findings"
+            ""
+            if report is None
+            else ", verified"
+            if report.ok
+            else f", {counted(len(report.findings), 'finding')}"
         )
-        say(f"{command.out}: {found.pairs:,} pairs ({splits}), {size(found.bytes)}{checked}")
-        say(f"{merged.linked:,} shards linked, {merged.copied:,} copied; content {found.content_id[:16]}")
+        say(f"{command.out}: {counted(found.pairs, 'pair')} ({splits}), {size(found.bytes)}{checked}")
+        say(
+            f"{counted(merged.linked, 'shard')} linked, {merged.copied:,} copied; content {found.content_id[:16]}"
+        )
         for seed, offset in sorted(merged.offsets.items()):
             say(
                 f"worlds of seed {seed} are numbered from {offset} on, for other seeds have worlds of the same names"

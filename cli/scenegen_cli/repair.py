@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from scenegen_cli.console import counted, note, say, say_json
+from scenegen.foundation.words import counted
+from scenegen_cli.console import note, say, say_json
 from scenegen_cli.parse import parse
 
 if TYPE_CHECKING:
