@@ -1,7 +1,8 @@
-"""Data no network can learn from or be judged on: refused in one line that names the sample, before time is spent."""
+"""Data, recipes and machines no network can learn from or be judged on: refused in one line, before time is spent."""
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from scenegen_trainers.evaluation.evaluate import evaluate
 from scenegen_trainers.inputs.knobs import TargetKnobs
 from scenegen_trainers.models.checkpoint import Checkpoint, read_checkpoint
 from scenegen_trainers.models.network import DepthNetwork
-from scenegen_trainers.models.pix2pix import absolute
+from scenegen_trainers.models.pix2pix import Pix2PixLearner, absolute
 from scenegen_trainers.tables.worker import worker
 from scenegen_trainers.training.loop import train
 from scenegen_trainers.training.machine import Machine
@@ -121,3 +122,64 @@ def test_a_table_refuses_a_split_it_could_not_judge_before_it_teaches(bare: Path
     with pytest.raises(InputError, match="'test' has no pairs"):
         handle(task, lambda said: None)
     assert not (tmp_path / "a").exists()
+
+
+@pytest.mark.parametrize(
+    ("machine", "said"),
+    [
+        (Machine(devices=0), "--devices 0: at least 1"),
+        (Machine(threads=0), "--threads 0: at least 1"),
+        (Machine(devices=3), "a batch of 4 cannot be shared evenly by 3 devices"),
+        (Machine("gpu"), "no GPU that torch can use"),
+    ],
+)
+def test_a_machine_that_is_none_is_one_line(
+    machine: Machine, said: str, toy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
+    with pytest.raises(InputError, match=said):
+        train(recipe(), TrainingData.at(toy), tmp_path / "a", machine)
+    assert not (tmp_path / "a").exists()
+
+
+def test_a_dataset_that_does_not_fit_is_refused(bare: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="'val' has no pairs"):
+        train(recipe(), TrainingData.at(bare), tmp_path / "a", Machine())
+    with pytest.raises(InputError, match=r"no layer 'flow_back'.*--layers"):
+        train(recipe(inputs={"flow": "truth"}), TrainingData.at(bare), tmp_path / "b", Machine())
+    with pytest.raises(InputError, match=r"no layer 'radiance'.*--layers"):
+        train(recipe(training={"noise": "redrawn"}), TrainingData.at(bare), tmp_path / "c", Machine())
+
+
+@pytest.mark.parametrize(
+    ("model", "keys", "message"),
+    [
+        ("pix2pix-flwo", {}, "perhaps you meant 'pix2pix-flow'"),
+        ("pix2pix", {"inputs": {"intervall": 3}}, "perhaps you meant 'interval'"),
+        ("pix2pix", {"pix2pix": {"w_l1": -1.0}}, r"--pix2pix\.w_l1"),
+        ("pix2pix", {"inputs": {"gain_percent": [0.5, 0.5]}}, "two different shares"),
+        (
+            "pix2pix",
+            {"training": {"mirror": "embeded"}},
+            "unknown value 'embeded'; perhaps you meant 'embedded'",
+        ),
+    ],
+)
+def test_bad_recipes_are_refused_in_one_line(model: str, keys: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        resolve_training(model, "ci", [Source("", keys)])
+
+
+def test_a_dataset_that_still_grows_is_refused(toy: Path, tmp_path: Path) -> None:
+    growing = shutil.copytree(toy, tmp_path / "growing")
+    (growing / "dataset.json").unlink()
+    with pytest.raises(InputError, match="is still growing; finish it with `scenegen render` first"):
+        TrainingData.at(growing)
+
+
+def test_losses_that_are_no_numbers_say_so(
+    toy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Pix2PixLearner, "step", lambda self, batch: {"l1": torch.tensor(float("nan"))})
+    with pytest.raises(InputError, match="no longer numbers at step 1"):
+        train(recipe(), TrainingData.at(toy), tmp_path / "a", Machine())

@@ -15,7 +15,6 @@ from scenegen.foundation.lock import DirectoryLock
 from scenegen_datasets.resolve import Source
 from scenegen_render.camera import Camera
 from scenegen_trainers.models.checkpoint import read_checkpoint
-from scenegen_trainers.models.pix2pix import Pix2PixLearner
 from scenegen_trainers.models.torch_file import unpacked
 from scenegen_trainers.pilots.checkpoint import TorchDepth
 from scenegen_trainers.training.loop import MODEL, Taught, train
@@ -98,24 +97,6 @@ def test_two_trainings_do_not_share_a_directory(toy: Path, tmp_path: Path) -> No
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="is a file; name a directory"):
         taught(toy, tmp_path / "file")
-
-
-@pytest.mark.parametrize(
-    ("machine", "said"),
-    [
-        (Machine(devices=0), "--devices 0: at least 1"),
-        (Machine(threads=0), "--threads 0: at least 1"),
-        (Machine(devices=3), "a batch of 4 cannot be shared evenly by 3 devices"),
-        (Machine("gpu"), "no GPU that torch can use"),
-    ],
-)
-def test_a_machine_that_is_none_is_one_line(
-    machine: Machine, said: str, toy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(torch.cuda, "is_available", lambda: False)
-    with pytest.raises(InputError, match=said):
-        train(recipe(), TrainingData.at(toy), tmp_path / "a", machine)
-    assert not (tmp_path / "a").exists()
 
 
 def test_the_seed_decides(toy: Path, tmp_path: Path) -> None:
@@ -235,39 +216,3 @@ def test_what_is_no_checkpoint_is_refused_in_one_line(toy: Path, tmp_path: Path)
     torch.save(content, tmp_path / "other.pt")
     with pytest.raises(InputError, match="unknown network 'resnet'"):
         read_checkpoint(tmp_path / "other.pt")
-
-
-def test_a_dataset_that_does_not_fit_is_refused(bare: Path, tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="'val' has no pairs"):
-        taught(bare, tmp_path / "a")
-    with pytest.raises(InputError, match=r"no layer 'flow_back'.*--layers"):
-        taught(bare, tmp_path / "b", inputs={"flow": "truth"})
-    with pytest.raises(InputError, match=r"no layer 'radiance'.*--layers"):
-        taught(bare, tmp_path / "c", training={"noise": "redrawn"})
-
-
-@pytest.mark.parametrize(
-    ("model", "keys", "message"),
-    [
-        ("pix2pix-flwo", {}, "perhaps you meant 'pix2pix-flow'"),
-        ("pix2pix", {"inputs": {"intervall": 3}}, "perhaps you meant 'interval'"),
-        ("pix2pix", {"pix2pix": {"w_l1": -1.0}}, r"--pix2pix\.w_l1"),
-        ("pix2pix", {"inputs": {"gain_percent": [0.5, 0.5]}}, "two different shares"),
-        (
-            "pix2pix",
-            {"training": {"mirror": "embeded"}},
-            "unknown value 'embeded'; perhaps you meant 'embedded'",
-        ),
-    ],
-)
-def test_bad_recipes_are_refused_in_one_line(model: str, keys: dict[str, Any], message: str) -> None:
-    with pytest.raises(InputError, match=message):
-        resolve_training(model, "ci", [Source("", keys)])
-
-
-def test_losses_that_are_no_numbers_say_so(
-    toy: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(Pix2PixLearner, "step", lambda self, batch: {"l1": torch.tensor(float("nan"))})
-    with pytest.raises(InputError, match="no longer numbers at step 1"):
-        taught(toy, tmp_path / "a")

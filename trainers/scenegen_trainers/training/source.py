@@ -46,8 +46,8 @@ class TrainingData:
             If there is no finished dataset.
         """
         PairDataset(
-            root, layers=()
-        )  # says in its own words what is wrong with a directory that is no dataset
+            root, layers=(), allow_partial=True
+        )  # says what is wrong with a directory that is no dataset
         if not (root / DATASET).is_file():
             raise InputError(f"{root} is still growing; finish it with `scenegen render` first")
         d = read_description(root / DATASET)
