@@ -10,6 +10,8 @@ from scenegen_datasets.shape import Each, Maybe, Numbers, Text, Whole, mapping
 _NUMBER = Numbers()
 _SHA256 = Text(r"[0-9a-f]{64}")
 _LINE = Text(r"[^\x00-\x1f\x7f]*")
+_NAME = Text(r"[A-Za-z0-9_][A-Za-z0-9._-]{0,127}")  # stands in cards, pages and paths
+_QUANTITY = r"[A-Za-z_][A-Za-z0-9_.]{0,63}"
 _COUNT = Whole(0, 2**32 - 1)
 _SIZE = Whole(0, 2**48)
 _SIDE = Whole(1, 65_535)
@@ -32,7 +34,7 @@ CLIP: dict[str, Any] = {
     ),
     "month": Whole(1, 12),
     "day": Whole(1, 31),
-    "weather": Each(_NUMBER),
+    "weather": Each(_NUMBER, pattern=_QUANTITY),
     "width_px": _SIDE,
     "height_px": _SIDE,
     "K": Numbers(3, 3),
@@ -67,7 +69,7 @@ RECEIPT: dict[str, Any] = {
 _SPLIT = {"pairs": _SIZE, "frames": _SIZE, "clips": _COUNT, "worlds": _COUNT}
 
 DESCRIPTION: dict[str, Any] = {
-    "name": _LINE,
+    "name": _NAME,
     "version": Text(r"[0-9]{1,9}\.[0-9]{1,9}\.[0-9]{1,9}(-dev)?"),
     "recipe_id": _SHA256,
     "content_id": _SHA256,
@@ -86,8 +88,8 @@ DESCRIPTION: dict[str, Any] = {
     "members": [_LINE],
     "counts": {**_SPLIT, "shard_bytes": _SIZE},
     "splits": {"train": _SPLIT, "val": _SPLIT, "test": _SPLIT},
-    "maps": [_LINE],
-    "ranges": Each(Numbers(2)),
+    "maps": [_NAME],
+    "ranges": Each(Numbers(2), pattern=_QUANTITY),
     "missing": [_LINE],
     "sums": Each(_SHA256, ("clips.jsonl", "index.npy")),
     "conventions": Each(_LINE),
@@ -97,7 +99,7 @@ DESCRIPTION: dict[str, Any] = {
 """Body of ``dataset.json``."""
 
 LOCK: dict[str, Any] = {
-    "name": _LINE,
+    "name": _NAME,
     "recipe": mapping,
     "recipe_id": _SHA256,
     "scene_semantics": Whole(0, 10**6),
@@ -109,7 +111,7 @@ LOCK: dict[str, Any] = {
 
 PARTS: list[Any] = [
     {
-        "name": _LINE,
+        "name": _NAME,
         "version": _LINE,
         "recipe_id": _SHA256,
         "content_id": _SHA256,

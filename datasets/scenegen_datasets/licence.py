@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from scenegen.foundation.errors import InputError
+from scenegen.foundation.errors import DatasetError, InputError
 
 DEFAULT = "CC-BY-4.0"
 """Everybody may use, change and share the data, and says where it comes from."""
@@ -51,8 +51,17 @@ def checked_licence(name: str) -> str:
 
 
 def licence_of(told: Mapping[str, Any]) -> str:
-    """The licence a lock or a ``dataset.json`` names; the default where it names none."""
-    return str(told.get(KEY, DEFAULT))
+    """The licence a lock or a ``dataset.json`` names; the default where it names none.
+
+    Raises
+    ------
+    DatasetError
+        If it cannot be an SPDX identifier: it stands in the header of the card, where a line end begins another key.
+    """
+    name = told.get(KEY, DEFAULT)
+    if not isinstance(name, str) or not _SPDX.fullmatch(name):
+        raise DatasetError(f"{KEY} {str(name)[:40]!a}: not the name of a licence; restore it from a copy")
+    return name
 
 
 def hub_lines(name: str) -> list[str]:

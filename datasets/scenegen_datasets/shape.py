@@ -76,10 +76,11 @@ class Maybe:
 
 @dataclass(frozen=True)
 class Each:
-    """A mapping with any names, those in `names` among them, all of whose values have one shape."""
+    """A mapping with any names of the pattern, those in `names` among them, all of whose values have one shape."""
 
     shape: Any
     names: tuple[str, ...] = ()
+    pattern: str = r"(?s).*"
 
 
 def mapping(value: Any) -> str | None:
@@ -107,6 +108,9 @@ def misshapen(value: Any, shape: Any, where: str = "") -> str | None:
         missing = next((name for name in shape.names if name not in value), None)
         if missing is not None:
             return _said(_join(where, missing), "is missing")
+        odd = next((name for name in value if not re.fullmatch(shape.pattern, name)), None)
+        if odd is not None:
+            return _said(_join(where, odd), "is not a name as it belongs there")
         return _first((item, shape.shape, _join(where, str(name))) for name, item in value.items())
     if isinstance(shape, Mapping):
         if not isinstance(value, Mapping):

@@ -14,12 +14,16 @@ import pytest
 import yaml
 
 from scenegen.classes import CLASSES
+from scenegen.foundation.canonical import pretty
 from scenegen.foundation.errors import DatasetError
 from scenegen.materials.table import materials
+from scenegen_datasets.description import read_description
 from scenegen_datasets.finish import finish
 from scenegen_datasets.info import info
 from scenegen_datasets.layers import DEFAULT_LAYERS
+from scenegen_datasets.licence import licence_of
 from scenegen_datasets.manifest import file_sha256, read_manifest
+from scenegen_datasets.seal import with_seal
 
 
 def header(root: Path) -> dict[str, Any]:
@@ -121,3 +125,28 @@ def test_the_summary_of_a_finished_dataset(pristine: Path) -> None:
     assert told.splits == {"train": 6, "val": 6, "test": 6}
     assert told.ranges["hour"] == (0.0, 22.0) and told.ranges["weather.air_mean_K"] == (290.0, 295.0)
     assert told.bytes == sum(p.stat().st_size for p in pristine.rglob("*.tar"))
+
+
+@pytest.mark.parametrize("name", ["x\nconfigs: []", "<img src=x>", "", 7, None, "CC-BY 4.0"])
+def test_a_licence_that_is_none_reaches_no_card(name: object) -> None:
+    """The header of the card is YAML: a line end in a name would begin another key."""
+    with pytest.raises(DatasetError, match="not the name of a licence"):
+        licence_of({"license": name})
+    assert licence_of({"license": "ODbL-1.0"}) == "ODbL-1.0" and licence_of({}) == "CC-BY-4.0"
+
+
+@pytest.mark.parametrize("place", [("name",), ("ranges", "hour"), ("maps", 0)])
+def test_markup_in_a_name_is_refused_before_it_reaches_a_card(dataset: Path, place: tuple[Any, ...]) -> None:
+    path = dataset / "dataset.json"
+    body = json.loads(path.read_bytes())
+    body.pop("seal")
+    *above, last = place
+    owner = body
+    for key in above:
+        owner = owner[key]
+    owner["<img src=x onerror=alert(1)>" if last == "hour" else last] = (
+        [0, 1] if last == "hour" else "<img src=x onerror=alert(1)>"
+    )
+    path.write_bytes(pretty(with_seal(body)))
+    with pytest.raises(DatasetError, match="makes no sense"):
+        read_description(path)
