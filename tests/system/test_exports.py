@@ -88,5 +88,5 @@ def test_default_place_of_a_path_with_dots(
     (tmp_path / "data").symlink_to(finished_dataset)
     (tmp_path / "deeper").mkdir()
     given = tmp_path / "deeper" / ".." / "data" / "."
-    assert main(["export", str(given), "--to", "pix2pix", "--split", "val", "--jobs", "1", "--json"]) == 0
+    assert main(["export", str(given), "--to", "pix2pix", "--split", "train", "--jobs", "1", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["root"] == str(tmp_path / "data-pix2pix")
