@@ -148,7 +148,7 @@ def _holds(values: Any, keys: Sequence[str]) -> bool:
 
 def _what(detail: ErrorDetails) -> str:
     kind, given = detail["type"], detail.get("input")
-    shown = repr(given) if not isinstance(given, Mapping | list | tuple) else "this"
+    shown = repr(given) if not isinstance(given, Mapping | list | tuple) else "several values"
     shown = shown if len(shown) <= 60 else f"{shown[:57]}..."
     if kind == "value_error":
         return " ".join(str(detail["ctx"]["error"]).split())
@@ -159,5 +159,10 @@ def _what(detail: ErrorDetails) -> str:
     if kind == "literal_error" and isinstance(given, str):
         known = [word.strip("' ") for word in str(detail["ctx"]["expected"]).replace(" or ", ",").split(",")]
         return f"unknown value '{given}'{nearest(given, known)}"
-    message = detail["msg"].replace("Input should be", "must be").replace("valid ", "")
+    message = (
+        detail["msg"]
+        .replace("Input should be", "must be")
+        .replace("valid integer", "whole number")
+        .replace("valid ", "")
+    )
     return f"{message}, not {shown}" if given is not None else f"{message}, not empty"
