@@ -37,7 +37,7 @@ def leak(found: DepthLeak) -> Html:
         [line], "grey level in its frame, 0 black, 1 white", (0.0, 1.0), span, log_y=True, up="depth [m]"
     )
     information = table(
-        (Column("knowing"), number("tells of depth"), number("of another picture")),
+        (Column("knowing"), number("tells of depth"), number("another picture")),
         [
             ("grey level", _bit(told.grey), _bit(told.grey_unrelated)),
             ("row", _bit(told.row), _bit(told.row_unrelated)),

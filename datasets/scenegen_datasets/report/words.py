@@ -68,7 +68,8 @@ def cards(*content: object, least_px: int = 330) -> Html:
 
 def note(*content: object) -> Html:
     """Small print."""
-    return element("p", *content, class_="small")
+    words = (part if isinstance(part, Html) else tied(str(part)) for part in content)
+    return element("p", *words, class_="small")
 
 
 def bars(found: Histogram, name: str = "", colour: str = SERIES[0]) -> Bars:

@@ -57,7 +57,7 @@ class Space:
         seen = still.layers["depth"][np.isfinite(still.layers["depth"])]
         reach_m = _REACH * float(np.median(seen)) if seen.size else 1.0
         points, colours = back_projected(still, picture, reach_m)
-        corners = frustum(still, 0.1 * reach_m) - self._origin
+        corners = frustum(still, 0.06 * reach_m) - self._origin
         places, shades = np.round(points - self._origin, 3).tolist(), np.round(linear(colours), 4).tolist()
         with self._scene:
             if self._cloud is None:
