@@ -21,7 +21,8 @@ def available(snippet: str) -> bool:
     asked = set(re.findall(r"^(?:import|from) (\w+)", snippet, re.M)) & set(OPTIONAL)
     asked |= {"torch"} if "adapters.torch" in snippet else set()
     asked |= {"torch", "lightning"} if "adapters.lightning" in snippet else set()
-    return all(importlib.util.find_spec(name) is not None for name in asked)
+    found = [importlib.util.find_spec(name) for name in asked]
+    return all(spec is not None and spec.origin is not None for spec in found)  # a mere folder has no origin
 
 
 @pytest.mark.filterwarnings("ignore")
@@ -40,14 +41,18 @@ def test_every_snippet_runs(
     ran = [snippet for snippet in SNIPPETS if available(snippet)]
     for snippet in ran:
         exec(compile(snippet, "docs/loading.md", "exec"), scope)
-    assert len(SNIPPETS) == 10 and len(ran) >= 6
+    assert len(SNIPPETS) == 13 and len(ran) >= 8
     assert scope["sample"]["thermal"].dtype == np.uint16
     np.testing.assert_array_equal(scope["there"][0]["depth"], scope["pairs"][0]["depth"])
+    assert len(scope["early"]) == 6 and len(scope["part"]) == 4
+    solid = np.isfinite(scope["z"])
+    assert (scope["ranges"] >= scope["z"]).all() and np.isfinite(scope["ranges"][solid]).all()
     thermal, depth = next(scope["examples"]())
     assert thermal.dtype == np.uint16 and depth.dtype == np.float32
     assert (scope["noisy"][0]["thermal"] != scope["pairs"][0]["thermal"]).any()
     if "frame" in scope:
         assert scope["frame"]["radiance"].dtype == np.float32
+        assert sorted(s["key"] for s in scope["training"]) == sorted(s["key"] for s in scope["stream"])
     if "counts" in scope:
         assert scope["counts"].shape == scope["sample"]["thermal"].shape and scope["counts"].max() > 255
     if "batch" in scope:
