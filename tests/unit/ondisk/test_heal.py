@@ -5,12 +5,16 @@ from __future__ import annotations
 import hashlib
 import shutil
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
+from scenegen.foundation.errors import InputError
+from scenegen_datasets.repair.clean import clean
 from scenegen_datasets.repair.heal import IRREPLACEABLE, heal, unflipped
+from scenegen_datasets.repair.repair import repair
 from scenegen_datasets.verify import verify
 
 BYTES = st.binary(min_size=1, max_size=200)
@@ -46,7 +50,7 @@ def test_another_length_is_not(data: bytes, more: bytes) -> None:
 
 @pytest.mark.parametrize("name", ["recipe.yaml", "recipe.lock.json"])
 @given(where=st.floats(0, 1, exclude_max=True))
-@settings(max_examples=6, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=4, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_a_file_of_a_dataset_heals_and_nothing_else_changes(
     pristine: Path, tmp_path: Path, name: str, where: float
 ) -> None:
@@ -75,3 +79,21 @@ def test_a_large_file_is_not_searched_for_hours(dataset: Path) -> None:
     lock.symlink_to(dataset / "elsewhere")
     assert heal(dataset) == ()
     assert lock.is_symlink()
+
+
+@pytest.mark.parametrize("name", ["index.npy", "README.md"])
+def test_a_link_in_the_place_of_a_derived_file_goes_as_verify_says(
+    dataset: Path, fakes: ModuleType, tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`repair` writes over no link; `clean` removes it, and what it led to stays."""
+    monkeypatch.setattr("scenegen_datasets.repair.repair.write_preview", lambda _: None)
+    before = fakes.tree(dataset)
+    (dataset / name).rename(tmp_path / "outside")
+    (dataset / name).symlink_to(tmp_path / "outside")
+    assert "`scenegen clean` removes it" in str(verify(dataset).findings)
+    with pytest.raises(InputError, match="is a symbolic link"):
+        repair(dataset, 1)
+    clean(dataset)
+    assert repair(dataset, 1).after.ok
+    assert fakes.tree(dataset) == before
+    assert (tmp_path / "outside").read_bytes() == before[name]
