@@ -95,8 +95,8 @@ def test_the_page_shows_every_stratum_beside_a_trivial_answer(toy: Path, tmp_pat
     )  # depth scale; best and worst of two clips, four tiles each
     assert 'src="http' not in page and 'href="http' not in page
     low, high = found.margins["row mean"][WHOLE]["rmse_m"]
-    verdict = "better" if low > 0 else "worse" if high < 0 else "open"
-    assert f"row mean {rmse(found.baselines['row mean']):.2f}: {verdict}" in page
+    said = "better than" if low > 0 else "worse than" if high < 0 else "open against"
+    assert f"{said} row mean {rmse(found.baselines['row mean']):.2f}" in page
 
 
 def test_without_a_training_split_nothing_stands_beside(toy: Path, tmp_path: Path) -> None:

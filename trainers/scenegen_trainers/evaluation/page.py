@@ -112,7 +112,7 @@ def _against(evaluation: Evaluation, stratum: str, name: str) -> Html:
     margin = evaluation.margins[rival][stratum][name]
     verdict = words.verdict(margin)
     lead = f"better by {words.interval_words(margin, name)} (95 %)"
-    said = f"{rival} {theirs}: {verdict}"
+    said = f"{words.AGAINST[verdict]} {rival} {theirs}"
     return element("div", said, class_=f"small {_CLASS[verdict]}", title=lead)
 
 

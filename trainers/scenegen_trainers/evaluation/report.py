@@ -149,12 +149,13 @@ def _strata_table(evaluation: Evaluation, names: Mapping[str, str]) -> str:
             for s in words.TOLD
         ]
         theirs = [
-            f"{words.value_of(evaluation.baselines[r], name, s)} ({words.verdict(evaluation.margins[r][name][s])})"
+            f"{words.AGAINST[words.verdict(evaluation.margins[r][name][s])]} "
+            f"{words.value_of(evaluation.baselines[r], name, s)}"
             for r in rivals
             for s in words.TOLD
         ]
         rows.append([said, f"{words.pixels(evaluation, name):,}", *ours, *theirs])
-    return markdown(["", "pixels", *heads, *(f"{r}'s {head}" for r in rivals for head in heads)], rows)
+    return markdown(["", "pixels", *heads, *(f"beside {r}: {head}" for r in rivals for head in heads)], rows)
 
 
 def _one_per_clip(ranked: Sequence[Judged]) -> list[Judged]:

@@ -133,6 +133,10 @@ def interval_words(span: Interval, name: str) -> str:
 
 
 def verdict(margin: Interval) -> str:
-    """ "better", "worse" or "open": what the interval of a margin says."""
+    """ "better", "worse" or "open": what the interval of the network's margin says."""
     low, high = margin
     return "better" if low > 0.0 else "worse" if high < 0.0 else "open"
+
+
+AGAINST = {"better": "better than", "worse": "worse than", "open": "open against"}
+"""A verdict before the name or figure it is held against."""
