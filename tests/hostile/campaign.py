@@ -20,6 +20,7 @@ from hostile.readers import READERS, readers_of
 PATIENCE_S = 60.0
 """A reader that sleeps so long waits for something that never comes; one that works has a limit of its own."""
 
+
 _LONG_AGO_NS = 10**18
 
 
@@ -57,9 +58,12 @@ class Campaign:
         Dataset; only copied.
     base : Path
         An empty folder.
+    child : str
+        Module of the child.
     """
 
-    def __init__(self, sound: Path, base: Path) -> None:
+    def __init__(self, sound: Path, base: Path, child: str = "hostile.child") -> None:
+        self._module = child
         self._base = base.resolve()
         self._sound, self._root = self._base / "sound", self._base / "dataset"
         self._scratch, self._outside = self._base / "scratch", self._base / "outside"
@@ -78,8 +82,7 @@ class Campaign:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._child.kill()
-        self._child.communicate()
+        self._end()
 
     def read(self, seed: int, kind: str | None = None, readers: tuple[str, ...] = ()) -> Read:
         """Make the mutant of this seed and let readers at it: those given, or those whose turn it is."""
@@ -91,7 +94,7 @@ class Campaign:
             if not fresh:
                 self._plant(kind, seed)
             found[name] = self._ask(name)
-            fresh = not READERS[name].writes
+            fresh = name not in READERS or not READERS[name].writes
         return Read(seed, kind, found, self._peak_MiB)
 
     def _plant(self, kind: str, seed: int) -> None:
@@ -123,13 +126,13 @@ class Campaign:
             if state not in "SZ" or now != cpu:
                 asleep_since, cpu = time.monotonic(), now
             if time.monotonic() - asleep_since > PATIENCE_S:
-                self._child.kill()
-                self._child.communicate()
+                self._end()
                 self._start()
                 return "WRONG: it hangs"
         line = self._child.stdout.readline()
         if not line:
             code = self._child.wait()
+            self._end()
             self._start()
             return f"WRONG: the reader died with {code}"
         what, peak = json.loads(line)
@@ -138,7 +141,7 @@ class Campaign:
 
     def _start(self) -> None:
         self._child = subprocess.Popen(
-            [sys.executable, "-m", "hostile.child"],
+            [sys.executable, "-m", self._module],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
@@ -150,6 +153,13 @@ class Campaign:
                 "PYTHONDONTWRITEBYTECODE": "1",
             },
         )
+
+    def _end(self) -> None:
+        self._child.kill()
+        for pipe in (self._child.stdin, self._child.stdout):
+            assert pipe is not None
+            pipe.close()
+        self._child.wait()
 
     def _watched(self, *, set_back: bool = False) -> dict[str, tuple[int, ...]]:
         """What lies outside: sizes, and the times of the last writing and reading; the latter can be set back first.
