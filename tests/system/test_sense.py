@@ -56,7 +56,9 @@ def test_another_camera_on_a_coarser_grid(
         assert fine["key"] == coarse["key"] and fine["split"] == coarse["split"]
         assert coarse["thermal"].shape == (32, 32)
     next(out.rglob("*.tar")).unlink()
-    assert main([*command, "--sensor.netd-mk", "200"]) == 0 and verify(out).ok, "the same command makes what is gone"
+    assert main([*command, "--sensor.netd-mk", "200"]) == 0 and verify(out).ok, (
+        "the same command makes what is gone"
+    )
     assert main([*command, "--sensor.netd-mk", "100"]) == 2, "another camera needs another directory"
     assert "sensor.netd_mk" in capsys.readouterr().err
 

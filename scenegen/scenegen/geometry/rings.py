@@ -6,9 +6,7 @@ import numpy as np
 from jaxtyping import Float64
 
 
-def around(
-    axis: Float64[np.ndarray, "3"], sides: int, turned: float = 0.0
-) -> Float64[np.ndarray, "sides 3"]:
+def around(axis: Float64[np.ndarray, "3"], sides: int, turned: float = 0.0) -> Float64[np.ndarray, "sides 3"]:
     """Unit vectors across a unit axis, evenly around it; `turned` is the place of the first, in steps."""
     helper = np.array([1.0, 0.0, 0.0]) if abs(axis[2]) > 0.9 else np.array([0.0, 0.0, 1.0])
     u = np.cross(helper, axis)
