@@ -138,6 +138,7 @@ class _Handler(BaseHTTPRequestHandler):
         inside = {path: data for path, data in files.items() if path.startswith(folder)}
         deep = parse_qs(urlsplit(self.path).query).get("recursive", ["False"])[0].lower() in ("true", "1")
         folders = {p[: k.start()] for p in inside for k in re.finditer("/", p) if k.start() > len(folder)}
+        told: list[dict[str, Any]]
         told = [{"type": "directory", "path": p, "oid": "0" * 40, "size": 0} for p in sorted(folders)]
         told += [entry(path, data) for path, data in sorted(inside.items())]
         self._say([one for one in told if deep or "/" not in one["path"][len(folder) :]])
