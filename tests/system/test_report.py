@@ -1,5 +1,7 @@
 """Audit and report of a real dataset through the command itself."""
 
+import base64
+import io
 import json
 import re
 import shutil
@@ -7,6 +9,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+from PIL import Image
 
 from scenegen_cli.main import main
 from scenegen_datasets.audits.run import QUESTIONS
@@ -24,14 +27,18 @@ class Page(HTMLParser):
         self.ids: set[str] = set()
         self.links: set[str] = set()
         self.pictures: list[str] = []
+        self.unsaid = 0
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         given = dict(attrs)
+        assert not given.get("id") or given["id"] not in self.ids
         self.ids.add(given.get("id") or "")
+        seen = tag in ("img", "svg") and given.get("aria-hidden") != "true"
+        self.unsaid += seen and not (given.get("alt") or given.get("aria-label"))
         self.links.add(given.get("href") or "")
         if tag == "img":
             self.pictures.append(given.get("src") or "")
-        elif tag not in ("meta", "input"):
+        elif tag not in ("meta", "input", "source"):
             self.open.append(tag)
 
     def handle_endtag(self, tag: str) -> None:
@@ -48,12 +55,52 @@ def test_the_page_stands_alone_and_holds_every_section(page: str) -> None:
     found.feed(page)
     assert not found.open
     assert {*QUESTIONS, "moments", "flights", "provenance", "cost"} <= found.ids
-    assert {f"#{name}" for name in QUESTIONS} <= found.links
+    assert {f"#{name}" for name in (*QUESTIONS, "moments", "flights", "provenance", "cost")} <= found.links
+    assert found.unsaid == 0  # every picture and chart says in words what it shows
     assert len(found.pictures) > 10 and all(
         src.startswith("data:image/webp;base64,") for src in found.pictures
     )
     assert not re.search(r"(?:src|href)=[\"'](?!data:|#)", page)  # nothing is fetched from anywhere
+    assert not re.search(r"@import|url\((?!#)|srcset=[\"'](?!data:)", page)
     assert len(page) < 10_000_000
+
+
+def test_flights_move_and_stand_still_for_those_who_ask(page: str) -> None:
+    films = re.findall(
+        r'srcset="data:image/webp;base64,([^"]+)"><img src="data:image/webp;base64,([^"]+)"', page
+    )
+    assert films and page.count("(prefers-reduced-motion:reduce)") == len(films)
+    for still, moving in films:
+        counts = []
+        for data in (still, moving):
+            with Image.open(io.BytesIO(base64.b64decode(data))) as image:
+                counts.append(getattr(image, "n_frames", 1))
+        assert counts == [1, 4]
+
+
+def test_the_keys_the_documentation_names_are_there(
+    finished_dataset: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    main(["audit", str(finished_dataset), "--json"])
+    found = json.loads(capsys.readouterr().out)
+    assert set(found) == {"ok", "steps", "clips", *QUESTIONS}
+    assert all(set(found[name]["verdict"]) == {"level", "headline", "words"} for name in QUESTIONS)
+    text = (Path(__file__).parents[2] / "docs" / "report.md").read_text("utf-8")
+    table = text.partition("## Good and bad values")[2].partition("## For machines")[0]
+    paths = [line.split("|")[1] for line in table.splitlines() if line.startswith("| `")]
+    named = [
+        path
+        for cell in paths
+        for path in re.findall(r"`((?:draws|contents|leak|labels|edges|flow)\.[^`]+)`", cell)
+    ]
+    assert len(named) >= 10
+    for path in named:
+        here = found
+        for part in path.split("."):
+            here = here[part.removesuffix("[]")]
+            here = here[0] if part.endswith("[]") else here
+            if here is None:
+                break  # too little here to judge, but the key is there
 
 
 def test_the_same_dataset_gives_the_same_bytes(page: str, finished_dataset: Path) -> None:
