@@ -107,10 +107,11 @@ def read_inside(root: Path, path: str, max_bytes: int) -> bytes:
         As `open_inside`, or if it is larger.
     """
     with os.fdopen(open_inside(root, path), "rb") as file:
-        if os.fstat(file.fileno()).st_size > max_bytes:
+        size = os.fstat(file.fileno()).st_size
+        if size > max_bytes:
             raise DatasetError(f"{printable(path)}: larger than the {max_bytes} bytes a sound file can have")
         try:
-            return file.read(max_bytes + 1)[:max_bytes]
+            return file.read(size)  # not `max_bytes`, for which a buffer would be made
         except OSError as error:
             raise _refusal(path, error) from None
 
