@@ -18,16 +18,16 @@ from scenegen_cli.parse import split_recipe_flags
 from scenegen_datasets.plan import plan
 from scenegen_datasets.recipe import Recipe, resolve_recipe
 from scenegen_datasets.resolve import Source, leaves
-from scenegen_datasets.run import WORKER_ENVIRONMENT
 from scenegen_datasets.studio import Studio, memory_MiB
+from scenegen_datasets.workers import ENVIRONMENT
 
 PEAK_MIB, DRIFT = 1536, 0.02
 
 
 def as_a_worker() -> None:
     """Start over with a worker's environment: the allocator reads it only once."""
-    if any(os.environ.get(name) != value for name, value in WORKER_ENVIRONMENT.items()):
-        os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, **WORKER_ENVIRONMENT})
+    if any(os.environ.get(name) != value for name, value in ENVIRONMENT.items()):
+        os.execve(sys.executable, [sys.executable, *sys.argv], {**os.environ, **ENVIRONMENT})
 
 
 def main() -> None:

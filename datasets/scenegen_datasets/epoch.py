@@ -83,7 +83,7 @@ class Epoch:
 
     def __iter__(self) -> Iterator[int]:
         order = self.order()
-        if not len(order):  # more ranks than samples: this pass is over, and the next may have some for this rank
+        if not len(order):  # more ranks than samples: this pass is over, the next may have some for this rank
             self.finish()
         for index in order[self.position :]:
             self.advance(1)

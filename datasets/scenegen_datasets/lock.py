@@ -5,9 +5,9 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 from typing import Any
 
+from scenegen.foundation import cpu
 from scenegen.foundation.canonical import digest
 from scenegen_datasets.licence import KEY
 
@@ -27,12 +27,6 @@ _PACKAGES = {
 }
 """What takes part in making bytes, besides the renderer: arrays, codecs, sun, geometry."""
 
-_LEVELS = {
-    "-v4": {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"},
-    "-v3": {"avx2", "fma", "bmi2"},
-    "-v2": {"sse4_2", "popcnt"},
-}
-
 
 def recipe_id(recipe: Mapping[str, Any], scene_semantics: int) -> str:
     """SHA-256 of the canonical JSON of the resolved recipe without `VOLATILE_KEYS` and the scene semantics version."""
@@ -46,19 +40,7 @@ def stable(recipe: Mapping[str, Any]) -> dict[str, Any]:
 
 def fingerprint(render: Mapping[str, str]) -> dict[str, str]:
     """Versions and CPU class that decide bytes: what the renderer says of itself, our libraries, the CPU."""
-    return {**render, **{name: _version(package) for name, package in _PACKAGES.items()}, "cpu": cpu_class()}
-
-
-def cpu_class() -> str:
-    """Machine type and x86-64 level (v2, v3 has AVX2 and FMA, v4 AVX-512): float results depend on both."""
-    try:
-        text = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace")
-    except OSError:
-        return platform.machine()
-    lines = (line.partition(":")[2].split() for line in text.splitlines() if line.startswith("flags"))
-    flags = set(next(lines, []))
-    level = next((name for name, needed in _LEVELS.items() if needed <= flags), "")
-    return f"{platform.machine()}{level}"
+    return {**render, **{name: _version(package) for name, package in _PACKAGES.items()}, "cpu": cpu.level()}
 
 
 def fingerprint_id(fingerprint: Mapping[str, str]) -> str:

@@ -22,21 +22,10 @@ from scenegen_datasets.recipe import SCENE_SEMANTICS
 from scenegen_datasets.render_job import Job, prepare
 from scenegen_datasets.run_log import RunLog, machine
 from scenegen_datasets.store import DATASET, MANIFEST, clean, create_or_open, finished
+from scenegen_datasets.workers import ENVIRONMENT
 
 WORKER = "scenegen_datasets.studio:worker"
 """What a worker process does."""
-
-WORKER_ENVIRONMENT = {
-    **dict.fromkeys(
-        ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS"), "1"
-    ),
-    # glibc raises its threshold for returning blocks to the system each time a large one is freed; a fixed one keeps
-    # memory flat from world to world (measured: left after release 280-302 MiB without, 284-285 MiB with).
-    "MALLOC_MMAP_THRESHOLD_": str(4 << 20),
-    "MALLOC_TRIM_THRESHOLD_": str(16 << 20),
-    "MALLOC_ARENA_MAX": "1",
-}
-"""Of every worker; set before its interpreter starts, because these are read once."""
 
 SHARE_FROM = 3
 """A world is exposed a second time by another worker if at least this many of its clips are open."""
@@ -161,7 +150,7 @@ def make_clips(
         WORKER,
         setup,
         job.processes,
-        environment=WORKER_ENVIRONMENT,
+        environment=ENVIRONMENT,
         share_from=SHARE_FROM,
     ) as pool:
         for event in pool.run(tasks):

@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Bool, Float32, UInt32
 
+from scenegen.foundation import cpu
 from scenegen.foundation.errors import BackendError
 
 OLDEST_LLVM = 17
@@ -33,7 +34,6 @@ LLVM_ADVICE = (
     " or point DRJIT_LIBLLVM_PATH to its libLLVM file"
 )
 _RENDER_PACKAGES = ("mitsuba", "drjit", "numpy", "opencv-python-headless", "OpenEXR")
-_ISA_LEVELS = (("avx512f", "x86_64-v4"), ("avx2", "x86_64-v3"), ("sse4_2", "x86_64-v2"))
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ def describe() -> Backend:
         variant=_Choice.variant,
         llvm_path=llvm_path,
         llvm_version=".".join(map(str, dr.detail.llvm_version())) if on_cpu else "",
-        cpu_model=_cpuinfo().get("model name", platform.processor() or platform.machine()),
+        cpu_model=cpu.described("model name", platform.processor() or platform.machine()),
         cpu_class=cpu_class(),
         threads=int(dr.thread_count()),
         versions=tuple((name, _version(name)) for name in sorted(_RENDER_PACKAGES)),
@@ -150,10 +150,7 @@ def cpu_class() -> str:
 
     The vendor counts because approximate reciprocals (used inside Embree) differ between vendors at one level.
     """
-    machine = platform.machine().lower()
-    flags = _cpuinfo().get("flags", "").split()
-    level = next((name for flag, name in _ISA_LEVELS if flag in flags), machine)
-    return f"{level} {_cpuinfo().get('vendor_id', platform.system())}"
+    return f"{cpu.level()} {cpu.described('vendor_id', platform.system())}"
 
 
 class _Choice:
@@ -247,17 +244,6 @@ def _loadable(library: Path) -> bool:
         except OSError:
             return False
     return True
-
-
-@cache
-def _cpuinfo() -> dict[str, str]:
-    """First processor's entries of /proc/cpuinfo; empty where there is none."""
-    source = Path("/proc/cpuinfo")
-    if not source.is_file():
-        return {}
-    first = source.read_text(encoding="utf-8", errors="replace").split("\n\n")[0]
-    rows = (line.split(":", 1) for line in first.splitlines() if ":" in line)
-    return {key.strip(): value.strip() for key, value in rows}
 
 
 def _version(package: str) -> str:

@@ -126,7 +126,7 @@ def test_a_clip_that_cannot_be_made_is_put_aside_and_made_by_a_later_run(
     root, clip = tmp_path / "tiny", f"city-00000-{stubborn.REFUSED:03d}"
     with monkeypatch.context() as patch:
         patch.setattr(run, "WORKER", "stubborn:worker")
-        patch.setitem(run.WORKER_ENVIRONMENT, "PYTHONPATH", os.pathsep.join([str(HERE), *sys.path]))
+        patch.setitem(run.ENVIRONMENT, "PYTHONPATH", os.pathsep.join([str(HERE), *sys.path]))
         assert main(small.render(root, jobs=1)) == 3
     captured = capsys.readouterr()
     assert "verified, without 1 of 4 clips" in captured.out

@@ -29,7 +29,7 @@ from scenegen_datasets.exports.plan import Plan, Request, plan_of
 from scenegen_datasets.exports.stage import Stage
 from scenegen_datasets.licence import licence_of
 from scenegen_datasets.place import check_room, existing_part, make_directory
-from scenegen_datasets.run import WORKER_ENVIRONMENT
+from scenegen_datasets.workers import ENVIRONMENT
 
 WORKER = "scenegen_datasets.exports.worker:worker"
 """What a worker process does."""
@@ -150,7 +150,7 @@ def _make(request: Request, plan: Plan, missing: Sequence[int], processes: int, 
             done += 1
             told(done, len(plan.jobs))
         return
-    with Pool(WORKER, setup, min(processes, len(missing)), environment=WORKER_ENVIRONMENT) as pool:
+    with Pool(WORKER, setup, min(processes, len(missing)), environment=ENVIRONMENT) as pool:
         for event in pool.run(Task(name, name, payload) for name, payload in payloads):
             if isinstance(event, Failed):
                 _raise(event)

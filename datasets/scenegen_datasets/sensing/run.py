@@ -24,11 +24,11 @@ from scenegen_datasets.lock import SOURCE, VOLATILE_KEYS, fingerprint, fingerpri
 from scenegen_datasets.pictures.preview import write_preview
 from scenegen_datasets.place import make_directory
 from scenegen_datasets.render_job import dataset_name
-from scenegen_datasets.run import WORKER_ENVIRONMENT
 from scenegen_datasets.sensing.camera import CameraKeys, NewCamera, new_camera
 from scenegen_datasets.sensing.film import Film, payload_of, setup_of
 from scenegen_datasets.source import open_source
 from scenegen_datasets.store import DATASET, LOCK, MANIFEST, clean, create_or_open, finished, read_lock
+from scenegen_datasets.workers import ENVIRONMENT
 
 WORKER = "scenegen_datasets.sensing.film:worker"
 
@@ -190,7 +190,7 @@ def _make(film: Film, missing: list[ClipJob], total: int, processes: int, told: 
     done = total - len(missing)
     tasks = [Task(job.name, f"{job.map}-{job.world}", payload_of(job)) for job in missing]
     count = min(processes, len(missing))
-    with Pool(WORKER, setup_of(film), count, environment=WORKER_ENVIRONMENT) as pool:
+    with Pool(WORKER, setup_of(film), count, environment=ENVIRONMENT) as pool:
         for event in pool.run(tasks):
             if isinstance(event, Failed):
                 kinds = {NoSpaceError.exit_code: NoSpaceError, InputError.exit_code: InputError}

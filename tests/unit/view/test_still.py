@@ -92,7 +92,9 @@ def test_the_roof_of_the_frustum_is_above_the_pictures_upper_edge() -> None:
 
 def test_points_are_shaded_in_linear_light() -> None:
     shares = linear(np.array([[0, 128, 255], [10, 188, 55]], np.uint8))
-    np.testing.assert_allclose(shares[0], [0.0, 0.21586, 1.0], atol=1e-5)  # 128 of 255 is a fifth of the light
+    np.testing.assert_allclose(
+        shares[0], [0.0, 0.21586, 1.0], atol=1e-5
+    )  # 128 of 255 is a fifth of the light
     np.testing.assert_allclose(shares[1], [0.003035, 0.50289, 0.03820], atol=1e-5)
 
 

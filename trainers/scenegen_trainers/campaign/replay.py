@@ -21,7 +21,7 @@ from scenegen.foundation.errors import InputError
 from scenegen.foundation.pool import Done, Failed, Pool, Task
 from scenegen_datasets.pictures import colour
 from scenegen_datasets.pictures.canvas import FAINT, INK, Canvas
-from scenegen_datasets.run import WORKER_ENVIRONMENT
+from scenegen_datasets.workers import ENVIRONMENT
 from scenegen_flythrough.loop.asking import Answer
 from scenegen_flythrough.loop.pilot import Observation
 from scenegen_render.sensor.agc import plateau_agc
@@ -86,7 +86,7 @@ def replay(campaign: Campaign, flight: int) -> list[Path]:
     ]
     setup = {**worker_setup(campaign), "flights": campaign.flights}
     made = []
-    with Pool(WORKER, setup, campaign.processes, environment=WORKER_ENVIRONMENT) as pool:
+    with Pool(WORKER, setup, campaign.processes, environment=ENVIRONMENT) as pool:
         for event in pool.run(tasks):
             if isinstance(event, Done):
                 made.append(campaign.root / REPLAYS / event.task.key)

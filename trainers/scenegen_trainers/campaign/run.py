@@ -12,8 +12,9 @@ from scenegen.foundation.errors import InputError, NoSpaceError
 from scenegen.foundation.lock import DirectoryLock
 from scenegen.foundation.pool import Done, Failed, Note, Pool, Strike, Task
 from scenegen_datasets.place import make_directory
-from scenegen_datasets.run import WORKER_ENVIRONMENT, JobError
+from scenegen_datasets.run import JobError
 from scenegen_datasets.run_log import RunLog, machine
+from scenegen_datasets.workers import ENVIRONMENT
 from scenegen_trainers.campaign.plan import Batch, batches
 from scenegen_trainers.campaign.recipe import FlightRecipe
 from scenegen_trainers.campaign.store import BASE_POINT, CampaignStore, check_output
@@ -190,7 +191,7 @@ def _fly_all(
         WORKER,
         worker_setup(campaign),
         campaign.processes,
-        environment=WORKER_ENVIRONMENT,
+        environment=ENVIRONMENT,
         share_from=SHARE_FROM,
         silence_s=60.0 + 2.0 * campaign.recipe.loop.patience_s,
     ) as pool:

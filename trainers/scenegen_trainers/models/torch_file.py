@@ -68,9 +68,8 @@ def unpacked(path: Path) -> dict[str, Any]:
         raise InputError(f"{path}: is a directory; `scenegen train` writes a network to model.pt in it")
     try:
         content = torch.load(path, map_location="cpu", weights_only=True)
-    except (
-        Exception
-    ) as error:  # whatever torch thinks of a file that is not its own; its advice would run code
+    except Exception as error:
+        # whatever torch thinks of a file that is not its own; its advice would run code
         reason = type(error).__name__
         raise InputError(f"{path}: no torch file of weights and plain data, or damaged ({reason})") from None
     if not isinstance(content, dict):
