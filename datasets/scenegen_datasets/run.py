@@ -20,7 +20,7 @@ from scenegen_datasets.lock import fingerprint_id, make_lock
 from scenegen_datasets.pictures.preview import write_preview
 from scenegen_datasets.recipe import SCENE_SEMANTICS
 from scenegen_datasets.render_job import Job, prepare
-from scenegen_datasets.run_log import RunLog, machine
+from scenegen_datasets.run_log import START, RunLog, machine
 from scenegen_datasets.store import DATASET, MANIFEST, clean, create_or_open, finished
 from scenegen_datasets.workers import ENVIRONMENT
 
@@ -112,7 +112,7 @@ def run(job: Job, render: Mapping[str, str], told: Told) -> Outcome:
             remove(job.root / MANIFEST)
         with RunLog(job.root) as log:
             log.write(
-                "start",
+                START,
                 pairs=job.pairs,
                 missing=len(missing),
                 processes=job.processes,

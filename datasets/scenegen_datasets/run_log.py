@@ -14,6 +14,12 @@ from scenegen.foundation.errors import InputError
 from scenegen.foundation.plain_file import open_plain
 from scenegen_datasets.store import RUN_LOG
 
+START = "start"
+"""Event that begins a run; its line holds the lock beside `OF_THE_RUN`."""
+
+OF_THE_RUN = ("time", "event", "pairs", "missing", "processes", "machine")
+"""What the line of a start says of the run itself."""
+
 
 class RunLog:
     """Appends one JSON object per line; a line is whole or absent.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import shutil
 from pathlib import Path
 from types import ModuleType
@@ -15,6 +16,7 @@ from scenegen.foundation.errors import InputError
 from scenegen_datasets.repair.clean import clean
 from scenegen_datasets.repair.heal import IRREPLACEABLE, heal, unflipped
 from scenegen_datasets.repair.repair import repair
+from scenegen_datasets.run_log import RunLog
 from scenegen_datasets.verify import verify
 
 BYTES = st.binary(min_size=1, max_size=200)
@@ -69,6 +71,34 @@ def test_what_is_damaged_beyond_that_is_left_as_it_is(dataset: Path) -> None:
     hurt = flipped(flipped(path.read_bytes(), 9), 99)
     path.write_bytes(hurt)
     assert heal(dataset) == () and path.read_bytes() == hurt
+
+
+@pytest.mark.parametrize("left", [None, 0, 300])
+def test_a_lock_comes_back_from_the_log_of_a_run(dataset: Path, left: int | None) -> None:
+    """Lost, emptied or cut; the newest line that tells the truth wins, and lines of others do no harm."""
+    path = dataset / "recipe.lock.json"
+    lock = path.read_bytes()
+    facts = {"pairs": 1, "missing": 0, "processes": 2, "machine": {"cpus": 2}}
+    with RunLog(dataset) as log:
+        log.write("start", **facts, **json.loads(lock))
+        log.write("start", **facts, **{**json.loads(lock), "git_sha": "of another run"})
+        log.write("end", content_id="0")
+    with (dataset / "run.log.jsonl").open("a") as file:
+        file.write('{"event": "start", "event": [}\n[1]\n{"event": "sta')
+    if left is None:
+        path.unlink()
+    else:
+        path.write_bytes(lock[:left])
+    assert heal(dataset) == ("recipe.lock.json",)
+    assert path.read_bytes() == lock and heal(dataset) == ()
+
+
+def test_a_log_that_tells_another_lock_is_not_believed(dataset: Path) -> None:
+    path = dataset / "recipe.lock.json"
+    with RunLog(dataset) as log:
+        log.write("start", **{**json.loads(path.read_bytes()), "name": "another"})
+    path.unlink()
+    assert heal(dataset) == () and not path.exists()
 
 
 def test_a_large_file_is_not_searched_for_hours(dataset: Path) -> None:
