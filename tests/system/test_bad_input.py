@@ -29,8 +29,8 @@ CASES = [
     (["render", "--pairs", "0"], "--pairs is missing or 0"),
     (["render", "--pairs", "-8"], "ask for 1 to 100,000,000"),
     (["render", "--pairs", "1000000000"], "ask for 1 to 100,000,000"),
-    (["render", "--pairs", "many"], "--pairs: invalid literal"),
-    (["render", "--pairs", "nan"], "--pairs: invalid literal"),
+    (["render", "--pairs", "many"], "is not a whole number"),
+    (["render", "--pairs", "nan"], "is not a whole number"),
     (["render", "--pears", "8"], "unknown flag '--pears'; perhaps you meant '--pairs'"),
     (["render", "extra"], "one word too many"),
     (["render", "--size", "5x5"], "must be greater than or equal to 16, not 5"),
@@ -76,7 +76,7 @@ CASES = [
     (["status", "nowhere"], "no dataset at nowhere"),
     (["verify", "nowhere"], "no dataset at nowhere"),
     (["preview", "nowhere"], "no dataset at nowhere"),
-    (["verify"], "Missing from scenegen verify"),
+    (["verify"], "DATASET is missing"),
     (["rendr"], "unknown command 'rendr'; perhaps you meant 'render'"),
 ]
 
