@@ -44,8 +44,14 @@ def at(page: Any, words: str) -> None:
 
 
 def choose(page: Any, label: str, option: str) -> None:
-    page.get_by_label(label, exact=True).click()
+    pick(page, page.get_by_label(label, exact=True), option)
+
+
+def pick(page: Any, selector: Any, option: str) -> None:
+    """Choose from a list, and wait until it has folded: for a moment after, two lists are in the page."""
+    selector.click()
     page.get_by_role("option", name=option).first.click()
+    page.locator(".q-menu").wait_for(state="detached")
 
 
 def move_to(page: Any, column: int, row: int, size: int = 64) -> dict[str, str]:
@@ -84,6 +90,7 @@ def test_keys_and_slider_go_one_frame_at_a_time(page: Any) -> None:
     at(page, "2 / 4")
     page.keyboard.press("ArrowRight")  # the slider has the focus and moves by itself
     at(page, "3 / 4")
+    page.wait_for_timeout(300)  # the slider tells its value once more, 50 ms after the last one
     page.keyboard.press("n")
     page.get_by_label("clip", exact=True).and_(page.locator("input[value*='clip 1']")).wait_for()
     at(page, "1 / 4")
@@ -109,8 +116,7 @@ def test_gain_palette_and_layer_change_the_picture_and_its_words(page: Any) -> N
     page.wait_for_function("document.querySelector('.picture img').src.includes('palette=inferno')")
     assert "gain=clip" in page.locator(".picture img").first.get_attribute("src")
     choose(page, "colour of the points", "semantic")
-    page.locator(".pictures .q-select").first.click()
-    page.get_by_role("option", name="temperature").click()
+    pick(page, page.locator(".pictures .q-select").first, "temperature")
     caption.get_by_text("kinetic").wait_for()
 
 

@@ -164,7 +164,7 @@ def test_mistakes_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
         ([*both[:2], "--proposed", str(true)], "holds pix2pix with truth flow"),
         ([*both[:2], "--proposed", str(wide)], "trained on frames of 48x32 pixels, 90 deg"),
         ([*both, "--size", "64x64"], "add --size 32x32"),
-        ([*both[:2], "--proposed", str(text)], "no checkpoint of weights"),
+        ([*both[:2], "--proposed", str(text)], "no torch file of weights"),
         ([*both[:2], "--proposed", str(tmp_path / "none.pt")], "no such file"),
         ([*both, "--map", "cty"], "unknown map 'cty'; perhaps you meant 'city'"),
         ([*both, "--data", str(tmp_path)], "no dataset"),
