@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import partial
-from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler, SimpleHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 
 
@@ -47,18 +47,24 @@ class _Handler(SimpleHTTPRequestHandler):
 
 
 @contextmanager
-def serve(root: Path, ranges: bool = True) -> Iterator[Served]:
-    """Serve a directory until the block ends."""
-    served = Served("")
-    handler = type("Handler", (_Handler,), {"served": served, "ranges": ranges})
-    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(handler, directory=str(root)))
+def standing(handler: Callable[..., BaseHTTPRequestHandler]) -> Iterator[str]:
+    """Address of a server on loopback that answers by a handler until the block ends."""
+    server = ThreadingHTTPServer(("127.0.0.1", 0), handler)
     server.daemon_threads = True
     thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.02})
     thread.start()
     try:
-        served.url = f"http://127.0.0.1:{server.server_address[1]}"
-        yield served
+        yield f"http://127.0.0.1:{server.server_address[1]}"
     finally:
         server.shutdown()
         server.server_close()
         thread.join()
+
+
+@contextmanager
+def serve(root: Path, ranges: bool = True) -> Iterator[Served]:
+    """Serve a directory until the block ends."""
+    served = Served("")
+    handler = type("Handler", (_Handler,), {"served": served, "ranges": ranges})
+    with standing(partial(handler, directory=str(root))) as served.url:
+        yield served

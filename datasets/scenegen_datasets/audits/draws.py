@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from jaxtyping import Float64
 
+from scenegen.foundation.words import counted
 from scenegen_datasets.audits.asked import QUANTITIES, Facts, Quantity, Range, asked_range, evenly_drawn
 from scenegen_datasets.audits.histogram import Histogram, even_edges
 from scenegen_datasets.audits.verdict import Verdict, skipped
@@ -195,7 +196,7 @@ def _tallies(found: Mapping[str, Counter[str]], recipe: Mapping[str, Any]) -> tu
 
 def _verdict(draws: Sequence[Draw], clips: int, worlds: int) -> Verdict:
     wrong = [draw for draw in draws if draw.outside]
-    base = f"{clips:,} clips of {worlds:,} world{'s' if worlds != 1 else ''}."
+    base = f"{counted(clips, 'clip')} of {counted(worlds, 'world')}."
     if wrong:
         names = ", ".join(f"{draw.words} ({draw.outside} of {draw.count})" for draw in wrong)
         return Verdict(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scenegen.foundation.errors import InputError
 from scenegen_datasets.index import checked, job_of
 from scenegen_datasets.job import ClipJob
-from scenegen_datasets.layers import IMU_MEMBER, LAYERS, MEMBERS, check_layers, layers_by_member, member_field
+from scenegen_datasets.layers import LAYERS, MEMBERS, check_layers, layers_by_member, member_field
 from scenegen_datasets.reader import ShardReader
 from scenegen_datasets.source import Source
 
@@ -83,11 +83,6 @@ class Clip:
         """Rows and columns of every frame."""
         row = self._source.rows[self._start]
         return int(row["height_px"]), int(row["width_px"])
-
-    @property
-    def has_inertial(self) -> bool:
-        """Whether the inertial table is stored."""
-        return int(self._source.rows[self._start][f"{member_field(IMU_MEMBER)}_size"]) > 0
 
     def pictures(self, *layers: str, pairs_only: bool = False) -> Iterator[Picture]:
         """All frames in order, with these layers; every byte is checked.

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from scenegen.classes import Semantic
+from scenegen.foundation.words import counted
 from scenegen.thermal_state import ThermalState
 from scenegen.world import World
 from scenegen_datasets.census import ClassCount, count_classes, count_objects
@@ -120,7 +121,7 @@ def _legend(canvas: Canvas, y: int, width: int, counts: Sequence[ClassCount]) ->
         end = canvas.text(x + 20, line, count.kind.name.replace("_", " "), 13)
         said = f"{count.triangles:,} triangles"
         if count.kind.thing:
-            said = f"{count.objects:,} object{'s' if count.objects > 1 else ''}, {said}"
+            said = f"{counted(count.objects, 'object')}, {said}"
         canvas.text(end + 10, line, said, 11, FAINT)
 
 

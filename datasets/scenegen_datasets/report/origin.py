@@ -10,6 +10,7 @@ from typing import Any
 
 from scenegen.foundation import canonical
 from scenegen.foundation.errors import DatasetError
+from scenegen.foundation.words import counted
 from scenegen_datasets.info import DatasetInfo
 from scenegen_datasets.lock import fingerprint_id
 from scenegen_datasets.pages.charts import share_bar
@@ -17,6 +18,7 @@ from scenegen_datasets.pages.markup import Html, element, folded
 from scenegen_datasets.pages.sheet import SERIES
 from scenegen_datasets.pages.tables import Column, number, table
 from scenegen_datasets.report.words import cards, note
+from scenegen_datasets.run_log import START
 from scenegen_datasets.seal import read_bounded
 from scenegen_datasets.store import RUN_LOG
 
@@ -102,13 +104,13 @@ def cost(events: Events) -> Html:
 
 
 def _facts(events: Events, clips: Events, cpu_s: float) -> Html:
-    starts = [e for e in events if e["event"] == "start"]
+    starts = [e for e in events if e["event"] == START]
     machine = starts[-1].get("machine", {}) if starts else {}
     peak = max((int(e.get("memory", {}).get("peak", 0)) for e in clips), default=0)
     size = sum(int(e.get("bytes", 0)) for e in clips)
     facts = [
         (f"{cpu_s / len(clips):.1f} s", "CPU a clip"),
-        (_span(_clock_s(events)), f"on the clock, {len(starts)} run{'s' if len(starts) != 1 else ''}"),
+        (_span(_clock_s(events)), f"on the clock, {counted(len(starts), 'run')}"),
         (f"{size / 1e9:.2f} GB", f"written, {len(clips):,} clips"),
         (f"{peak:,} MiB" if peak else "–", "largest worker"),
         (
@@ -136,7 +138,7 @@ def _clock_s(events: Events) -> float:
             now = datetime.datetime.fromisoformat(str(event.get("time")))
         except ValueError:
             continue
-        if event["event"] == "start":
+        if event["event"] == START:
             total += (last - begun).total_seconds() if begun is not None and last is not None else 0.0
             begun = now
         last = now

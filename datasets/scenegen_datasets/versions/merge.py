@@ -16,7 +16,7 @@ from scenegen.foundation.lock import DirectoryLock
 from scenegen_datasets.finish import finish
 from scenegen_datasets.info import DatasetInfo, info
 from scenegen_datasets.pictures.preview import write_preview
-from scenegen_datasets.place import check_room
+from scenegen_datasets.place import check_room, make_directory
 from scenegen_datasets.receipt import read_receipt
 from scenegen_datasets.render_job import dataset_name
 from scenegen_datasets.store import DATASET, LOCK, RECIPE, check_output, clean, read_lock
@@ -112,12 +112,7 @@ def _refuse_nesting(out: Path, roots: Sequence[Path]) -> None:
 def _prepare(out: Path) -> None:
     if not (out / LOCK).exists() and out.is_dir():
         check_output(out)
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            f"{out}: cannot be made: {error.strerror or error}; choose another directory"
-        ) from None
+    make_directory(out, "OUT")
 
 
 def _copied_bytes(out: Path, parts: Sequence[Part], offsets: Mapping[int, int], copy: bool) -> int:

@@ -12,7 +12,6 @@ from jaxtyping import Float32, UInt8
 from torch import Tensor
 
 from scenegen_trainers.inputs.look import centred
-from scenegen_trainers.metrics import DepthMeter, DepthReport, ValidDepth
 from scenegen_trainers.training.samples import Draw, Samples
 
 
@@ -58,16 +57,3 @@ def answers(
             depths = metres(images).cpu().numpy()
         for position, s, depth in zip(some, shown, depths, strict=True):
             yield Answer(position, s.image, np.asarray(depth, np.float32), s.depth_m)
-
-
-def report_of(
-    metres: Callable[[Tensor], Tensor],
-    samples: Samples,
-    device: Any = "cpu",
-    valid: ValidDepth | None = None,
-) -> DepthReport:
-    """Scores over a whole split."""
-    meter = DepthMeter(valid)
-    for answer in answers(metres, samples, device):
-        meter.add(answer.estimate_m, answer.truth_m)
-    return meter.report()

@@ -11,9 +11,6 @@ from jaxtyping import Float32, Integer
 from scenegen.classes import CLASSES
 from scenegen_trainers.metrics import ValidDepth
 
-FAMILIES = ("distance", "light", "map", "class")
-"""First words of the names of strata."""
-
 DAY_FROM_DEG = 0.0
 """Sun elevation from which on it is day; below, there is no direct sun on anything."""
 

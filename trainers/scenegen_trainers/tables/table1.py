@@ -13,6 +13,7 @@ from scenegen.foundation.canonical import read
 from scenegen.foundation.errors import InputError
 from scenegen.foundation.lock import DirectoryLock
 from scenegen.foundation.pool import Done, Failed, Note, Pool, Task
+from scenegen_datasets.place import make_directory
 from scenegen_datasets.resolve import Source
 from scenegen_trainers.evaluation.baselines import PAINTED_ROW_MEAN, ROW_MEAN
 from scenegen_trainers.evaluation.scores import NAMES
@@ -165,7 +166,7 @@ def finish_runs(
     InputError
         As `run_table1`.
     """
-    job.out.parent.mkdir(parents=True, exist_ok=True)
+    make_directory(job.out.parent)
     root = make_directories(job.out.parent, job.out.name)
     make_directories(root, RUNS)
     with DirectoryLock(root):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from scenegen.foundation.words import counted
 from scenegen_trainers.campaign.statistics import Paired, Rate
 from scenegen_trainers.campaign.summary import KINDS, Line, Spread
 from scenegen_trainers.evaluation.scores import markdown
@@ -57,7 +58,7 @@ def about(table: Table2) -> str:
     )
     return (
         f"{_network(job.conventional)}. {_network(job.proposed)}. "
-        f"{worlds} {recipe.campaign.split} world{'s' if worlds > 1 else ''} of seed "
+        f"{counted(worlds, f'{recipe.campaign.split} world')} of seed "
         f"{recipe.dataset.seed} ({where}), camera {camera.width_px}x{camera.height_px}, {camera.hfov_deg:g} deg, NETD "
         f"{recipe.dataset.sensor.netd_mk:g} mK; planner {job.planner}, cruise {loop.cruise_mps:g} m/s, {late}."
     )
