@@ -1,27 +1,26 @@
-"""All map families. A new one is a folder and a line here."""
+"""All map families. A new one is a folder and a line here.
+
+What a family can be asked is known at once; the code that builds its worlds is imported with the first of them, so that
+help, checks and plans do not wait for geometry.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import pkgutil
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 
 from scenegen.climate.season import Season
 from scenegen.foundation.errors import InputError, nearest
 from scenegen.foundation.section import Section
-from scenegen.maps.city.city import build_city
 from scenegen.maps.city.knobs import CityKnobs
-from scenegen.maps.coastline.coastline import build_coastline
 from scenegen.maps.coastline.knobs import CoastlineKnobs
-from scenegen.maps.field.field import build_field
 from scenegen.maps.field.knobs import FieldKnobs
 from scenegen.maps.neighborhood.knobs import NeighborhoodKnobs
-from scenegen.maps.neighborhood.neighborhood import build_neighborhood
 from scenegen.maps.own_scene.knobs import OwnScene
-from scenegen.maps.own_scene.own_scene import build_own_scene
 from scenegen.world import World
 
 
@@ -37,32 +36,42 @@ class MapFamily:
         One line for listings.
     knobs : type of Section
         What can be turned.
-    build : callable
-        Knobs, season and generator to world.
+    builder : str
+        ``module:function``, from knobs, season and generator to world.
     """
 
     name: str
     description: str
     knobs: type[Section]
-    build: Callable[[Any, Season, np.random.Generator], World]
+    builder: str
 
 
 _FAMILIES = (
     MapFamily(
-        "city", "dense streets, blocks and parks of a European or American town", CityKnobs, build_city
+        "city",
+        "dense streets, blocks and parks of a European or American town",
+        CityKnobs,
+        "scenegen.maps.city.city:build_city",
     ),
     MapFamily(
-        "coastline", "cliffs, dunes and beach by a wavy sea, with pier, breakwater and lighthouse", CoastlineKnobs,
-        build_coastline,
+        "coastline",
+        "cliffs, dunes and beach by a wavy sea, with pier, breakwater and lighthouse",
+        CoastlineKnobs,
+        "scenegen.maps.coastline.coastline:build_coastline",
     ),
     MapFamily(
-        "neighborhood", "a suburb: winding streets, houses with gardens, pools and sheds, trees, utility poles",
-        NeighborhoodKnobs, build_neighborhood,
+        "neighborhood",
+        "a suburb: winding streets, houses with gardens, pools and sheds, trees, utility poles",
+        NeighborhoodKnobs,
+        "scenegen.maps.neighborhood.neighborhood:build_neighborhood",
     ),
     MapFamily(
-        "field", "a football ground in rolling farmland: pitches, stands, floodlights, nets", FieldKnobs, build_field
+        "field",
+        "a football ground in rolling farmland: pitches, stands, floodlights, nets",
+        FieldKnobs,
+        "scenegen.maps.field.field:build_field",
     ),
-)  # fmt: skip
+)
 
 MAPS: Mapping[str, MapFamily] = MappingProxyType({family.name: family for family in _FAMILIES})
 """All map families by name."""
@@ -102,8 +111,11 @@ def build_world(map: str, knobs: Section, season: Season, rng: np.random.Generat
         If the map is unknown or the knobs belong to another family.
     """
     if isinstance(knobs, OwnScene):
+        from scenegen.maps.own_scene.own_scene import build_own_scene
+
         return build_own_scene(map, knobs, season, rng)
     family = map_family(map)
     if not isinstance(knobs, family.knobs):
         raise InputError(f"map '{map}' takes {family.knobs.__name__}, not {type(knobs).__name__}")
-    return family.build(knobs, season, rng)
+    world: World = pkgutil.resolve_name(family.builder)(knobs, season, rng)
+    return world

@@ -17,11 +17,11 @@ from scenegen.geometry.standing import mesh_heights
 from scenegen.geometry.template import place
 from scenegen.maps.city.streets import StreetPlan
 from scenegen.maps.city.workshop import CityWorkshop
+from scenegen.parts.countryside import countryside
 from scenegen.parts.vegetation.grove import grove
 
 FAR_M = 2600.0
 _ROAD_HALF_M = 5.0
-_COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "grass_watered")
 
 
 def road_lines(plan: StreetPlan) -> np.ndarray:
@@ -31,28 +31,16 @@ def road_lines(plan: StreetPlan) -> np.ndarray:
 
 def far_regions(plan: StreetPlan, shop: CityWorkshop, rng: np.random.Generator) -> list[Region]:
     """Land around the city; the first region covers everything."""
-    land, fields, road = shop.builder.new_objects(), shop.builder.new_objects(), shop.builder.new_objects()
-    edge = shapely.box(-FAR_M, -FAR_M, FAR_M, FAR_M)
-    regions = [Region(edge, shop.palette.pick("grass_dry", rng), int(Semantic.GRASS), land)]
+    grass = shop.palette.pick("grass_dry", rng)
     half = np.abs(plan.outline.bounds).max()
     count = 60
     angle, reach = rng.uniform(0, 2 * np.pi, count), half + 1800.0 * rng.uniform(0.02, 1.0, count)
     centre = np.column_stack([np.cos(angle), np.sin(angle)]) * reach[:, None]
     length = rng.uniform(60.0, 130.0, count) * (reach / half)
-    shapes = rectangles(centre, length, length * rng.uniform(0.4, 0.9, count), rng.uniform(0, np.pi, count))
+    fields = rectangles(centre, length, length * rng.uniform(0.4, 0.9, count), rng.uniform(0, np.pi, count))
     roads = shapely.buffer(road_lines(plan), _ROAD_HALF_M, cap_style="flat")
-    city = np.array([plan.outline.buffer(25.0), *shapely.buffer(roads, 4.0)], dtype=object)
-    keep = clear_of(shapes, city) & first_come(shapes) & shapely.within(shapes, edge.buffer(-50.0))
-    for shape, k in zip(shapes[keep], rng.integers(0, len(_COVERS), keep.sum()), strict=True):
-        name = _COVERS[int(k)]
-        semantic = Semantic.SOIL if name.startswith("soil") else Semantic.GRASS
-        regions.append(Region(shape, shop.palette.pick(name, rng), int(semantic), fields))
-    asphalt = shop.palette.pick("asphalt_aged", rng)
-    inside = edge.buffer(-20.0)
-    for shape in roads:
-        for piece in shapely.get_parts(shapely.intersection(shape, inside)):
-            regions.append(Region(piece, asphalt, int(Semantic.ROAD), road))
-    return regions
+    land = shapely.box(-FAR_M, -FAR_M, FAR_M, FAR_M)
+    return countryside(land, grass, plan.outline.buffer(25.0), fields, roads, land.buffer(-20.0), shop, rng)
 
 
 @dataclass(frozen=True, eq=False)

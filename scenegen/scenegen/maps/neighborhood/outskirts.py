@@ -18,9 +18,9 @@ from scenegen.geometry.standing import draped
 from scenegen.geometry.template import Template, place
 from scenegen.maps.neighborhood.streets import CARRIAGEWAY_M, FAR_M, StreetPlan, road_lines
 from scenegen.maps.neighborhood.workshop import NeighborhoodWorkshop
+from scenegen.parts.countryside import countryside
 from scenegen.parts.vegetation.grove import grove
 
-_COVERS = ("grass_watered", "grass_dry", "soil_dry", "grass_dry", "soil_wet", "grass_watered")
 _BELOW_GROUND_M = 1.2
 _CROWNS, _FULL_M = 6, 150.0
 """Crowns of a mass of trees; how far beyond the neighborhood it has all of them."""
@@ -30,30 +30,18 @@ _FINE_RING_M = 45.0
 
 def far_regions(plan: StreetPlan, shop: NeighborhoodWorkshop, rng: np.random.Generator) -> list[Region]:
     """Land around; the first region covers everything."""
-    land, fields, road = shop.builder.new_objects(), shop.builder.new_objects(), shop.builder.new_objects()
-    edge = shapely.box(-FAR_M, -FAR_M, FAR_M, FAR_M)
-    regions = [Region(edge, shop.palette.pick("grass_dry", rng), int(Semantic.GRASS), land)]
+    grass = shop.palette.pick("grass_dry", rng)
     half = np.abs(plan.outline.bounds).max()
     count = 70
     angle, reach = rng.uniform(0, 2 * np.pi, count), half + 1700.0 * rng.uniform(0.0, 1.0, count) ** 1.3
     centre = np.column_stack([np.cos(angle), np.sin(angle)]) * reach[:, None]
     length = rng.uniform(50.0, 110.0, count) * (reach / half)
     heading = rng.uniform(0, np.pi, count)
-    shapes = rectangles(centre, length, length * rng.uniform(0.4, 0.9, count), heading)
+    fields = rectangles(centre, length, length * rng.uniform(0.4, 0.9, count), heading)
     roads = shapely.buffer(road_lines(plan.exits), CARRIAGEWAY_M / 2, cap_style="flat")
-    taken = np.array([plan.outline.buffer(14.0), *shapely.buffer(roads, 4.0)], dtype=object)
-    keep = clear_of(shapes, taken) & first_come(shapes) & shapely.within(shapes, edge.buffer(-50.0))
-    for shape, k in zip(shapes[keep], rng.integers(0, len(_COVERS), keep.sum()), strict=True):
-        name = _COVERS[int(k)]
-        semantic = Semantic.SOIL if name.startswith("soil") else Semantic.GRASS
-        regions.append(Region(shape, shop.palette.pick(name, rng), int(semantic), fields))
-    asphalt = shop.palette.pick("asphalt_aged", rng)
-    inside = edge.buffer(-20.0).difference(plan.outline)
-    for shape in roads:
-        for piece in shapely.get_parts(shapely.intersection(shape, inside)):
-            if piece.geom_type == "Polygon":
-                regions.append(Region(piece, asphalt, int(Semantic.ROAD), road))
-    return regions
+    land = shapely.box(-FAR_M, -FAR_M, FAR_M, FAR_M)
+    paved = land.buffer(-20.0).difference(plan.outline)
+    return countryside(land, grass, plan.outline.buffer(14.0), fields, roads, paved, shop, rng)
 
 
 def lie_of(plane: Triangulation, plan: StreetPlan, relief: Relief) -> Relief:
