@@ -26,6 +26,9 @@ from scenegen_trainers.tables.order import judge
 from scenegen_trainers.tables.paper import Relation
 from scenegen_trainers.training.recipe import resolve_training
 
+_BESIDE = {"flow": "dis", "flow_scale": "full", "flow_shown": "channel"}
+"""DIS flow in pixels, whole, in a channel beside the image."""
+
 VARIANTS: dict[str, tuple[str, dict[str, Any]]] = {
     "as proposed": ("pix2pix-flow", {}),
     "no flow": ("pix2pix", {}),
@@ -42,10 +45,7 @@ VARIANTS: dict[str, tuple[str, dict[str, Any]]] = {
     "S by grey value": ("pix2pix-flow", {"inputs": {"simplified": "luma"}}),
     "S keeps scale": ("pix2pix-flow", {"inputs": {"flow_scale": "full"}}),
     "DIS, S keeps scale": ("pix2pix-flow", {"inputs": {"flow": "dis", "flow_scale": "full"}}),
-    "DIS, S keeps scale, a channel of its own": (
-        "pix2pix-flow",
-        {"inputs": {"flow": "dis", "flow_scale": "full", "flow_shown": "channel"}},
-    ),
+    "DIS, S keeps scale, a channel of its own": ("pix2pix-flow", {"inputs": _BESIDE}),
     "two frames, no flow": ("pix2pix", {"inputs": {"frames": 2}}),
     "logarithmic depth": ("pix2pix-flow", {"target": {"scale": "log"}}),
     "sky left out": ("pix2pix-flow", {"target": {"sky": "ignore"}}),
@@ -54,18 +54,17 @@ VARIANTS: dict[str, tuple[str, dict[str, Any]]] = {
     "FastDepth, linear depth": ("fastdepth", {"target": {"scale": "linear"}}),
     "FastDepth, sky left out": ("fastdepth", {"target": {"sky": "ignore"}}),
     "FastDepth, two frames": ("fastdepth", {"inputs": {"frames": 2}}),
-    "FastDepth, DIS in a channel": (
-        "fastdepth",
-        {"inputs": {"flow": "dis", "flow_scale": "full", "flow_shown": "channel"}},
-    ),
+    "FastDepth, DIS in a channel": ("fastdepth", {"inputs": _BESIDE}),
     "FastDepth, DIS in a channel, sky left out": (
         "fastdepth",
-        {
-            "inputs": {"flow": "dis", "flow_scale": "full", "flow_shown": "channel"},
-            "target": {"sky": "ignore"},
-        },
+        {"inputs": _BESIDE, "target": {"sky": "ignore"}},
     ),
     "Lite-Mono": ("litemono", {}),
+    "Lite-Mono, DIS in a channel": ("litemono", {"inputs": _BESIDE}),
+    "Lite-Mono, DIS in a channel, sky left out": (
+        "litemono",
+        {"inputs": _BESIDE, "target": {"sky": "ignore"}},
+    ),
 }
 
 BASE = "as proposed"

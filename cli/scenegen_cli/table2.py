@@ -35,7 +35,8 @@ PUT_ASIDE = 3
 class Table2:
     """Fly the paper's Table 2: conventional against proposed, w_L1 = 300, on the same missions. Run again to resume.
 
-    Give two checkpoints, or --data alone: then both are trained on it first. Oracle and blind fly along as bounds.
+    Give two checkpoints, or --data alone: then both are trained on it first. Oracle and blind fly along as bounds;
+    other networks with --also.
     Takes recipe keys as flags, such as --map, --seed, --mission.distance-m, --loop.latency measured.
     """
 
@@ -43,6 +44,8 @@ class Table2:
     """Checkpoint of `scenegen train --model pix2pix`."""
     proposed: Path | None = None
     """Checkpoint of `scenegen train --model pix2pix-flow --pix2pix.w-l1 300`."""
+    also: tuple[str, ...] = ()
+    """Other checkpoints that fly along, each held against both methods: PATH or NAME=PATH."""
     data: Path | None = None
     """Finished dataset: its test worlds are flown, and without checkpoints the networks learn from it."""
     profile: str = "ci"
@@ -93,20 +96,25 @@ def prepare(command: Table2, flags: Mapping[str, Any], out: Path) -> Table2Job:
     InputError
         For whatever is wrong, before anything is trained or built.
     """
+    from scenegen_trainers.pilots.camera_check import check_camera
     from scenegen_trainers.pilots.modules import find_modules_here
-    from scenegen_trainers.tables.table2 import FLIGHTS, Table2Job, check_planner, flight_recipe
+    from scenegen_trainers.tables.entrants import others
+    from scenegen_trainers.tables.table2 import FLIGHTS, Table2Job
+    from scenegen_trainers.tables.table2_recipe import check_planner, flight_recipe
     from scenegen_trainers.training.source import TrainingData
 
     if command.profile not in FLIGHTS:
         raise InputError(f"--profile {command.profile}: unknown profile{nearest(command.profile, FLIGHTS)}")
     if command.flights < 0 or command.training_seed < 0:
         raise InputError("--flights and --training-seed must not be negative")
-    given = _given(command)
+    given, also = _given(command), others(command.also)
     school, flights = _sources(command, flags)
     data = TrainingData.at(command.data) if command.data is not None else None
     recipe = flight_recipe(flights, given[0].camera if given else None, command.data)
     find_modules_here()
     check_planner(command.planner, recipe)
+    for other in also:
+        check_camera(other.path, other.camera, recipe.dataset.camera.camera())
     if not given:
         assert data is not None
         _check_camera(data, recipe)
@@ -124,8 +132,9 @@ def prepare(command: Table2, flags: Mapping[str, Any], out: Path) -> Table2Job:
         profile=command.profile,
         dataset={} if data is None else {**data.record()},
         allow_mixed=command.allow_mixed,
+        others=also,
     )
-    assert job.campaign  # looks at everything that two checkpoints can have wrong
+    assert job.campaign  # looks at everything that checkpoints can have wrong
     return job
 
 

@@ -14,14 +14,16 @@ from scenegen_cli.main import main
 from scenegen_trainers.campaign.results import gather
 from scenegen_trainers.models.checkpoint import write_checkpoint
 from scenegen_trainers.models.network import DepthNetwork
-from scenegen_trainers.tables.entrants import Entrant, entrant
-from scenegen_trainers.tables.table2 import Table2, Table2Job, flight_recipe
+from scenegen_trainers.tables.entrants import Entrant, entrant, others
+from scenegen_trainers.tables.table2 import Table2, Table2Job, tabled
 from scenegen_trainers.tables.table2_page import as_html, as_json
 from scenegen_trainers.tables.table2_paper import METHODS, PRINTED_AVERAGE, PUBLISHED, published_mean
+from scenegen_trainers.tables.table2_recipe import flight_recipe
 from scenegen_trainers.tables.table2_text import as_markdown
 
 CAMERA = {"width_px": 32, "height_px": 32, "hfov_deg": 90.0}
 UNET = {"width": 2, "downs": 3}
+LITE = {"architecture": "litemono", "knobs": {"width": 0.25}}
 
 
 def test_the_papers_average_leaves_city_out() -> None:
@@ -68,13 +70,14 @@ def entrants(root: Path) -> tuple[Entrant, Entrant]:
     return conventional, entrant("proposed", checkpoint(root / "b" / "model.pt", "pix2pix-flow"))
 
 
-def made_up(root: Path, crashes: dict[str, dict[str, tuple[int, ...]]]) -> Table2:
+def made_up(root: Path, crashes: dict[str, dict[str, tuple[int, ...]]], also: tuple[str, ...] = ()) -> Table2:
     """A table of flights nobody flew: per map and pilot, which of ten crash."""
     recipe = flight_recipe(
         [flown.Source("", {"map": list(crashes), "campaign": {"flights_per_batch": 4}})], CAMERA, None
     )
+    dataset = {"name": "toy", "version": "1.0.0"}
     job = Table2Job(
-        root / "t", recipe, *entrants(root), 10, "waypoint", 1, "ci", {"name": "toy", "version": "1.0.0"}
+        root / "t", recipe, *entrants(root), 10, "waypoint", 1, "ci", dataset, others=others(also)
     )
     campaign = job.campaign
     campaign.root.mkdir(parents=True)
@@ -83,9 +86,7 @@ def made_up(root: Path, crashes: dict[str, dict[str, tuple[int, ...]]]) -> Table
     for point, pilot, batch in campaign.everything():
         hit = crashes[batch.map].get(campaign.names[pilot], ())
         store.commit(point, campaign.pilots[pilot].slug, batch, flown.record(batch, hit))
-    found = gather(campaign)
-    lines = {(line.map, line.pilot): line for line in found.lines}
-    return Table2(job, lines, {duel.map: duel.paired for duel in found.duels}, {})
+    return tabled(job, gather(campaign), {})
 
 
 EVERY = tuple(range(10))
@@ -137,6 +138,50 @@ def test_pages_say_the_same(table: Table2) -> None:
     assert not any("another dataset" in said for said in as_json(table)["warnings"])
 
 
+def test_other_networks_are_held_against_both_methods(tmp_path: Path) -> None:
+    """Coast: 6 and 0 of 10 against 2; city: 8 and 3 against 1, which the proposed one hit as well."""
+    lite = checkpoint(tmp_path / "lite.pt", "pix2pix", **LITE)
+    table = made_up(
+        tmp_path,
+        {
+            "city": {"conventional": EVERY[:8], "proposed": EVERY[7:], "lite": (9,)},
+            "coastline": {"conventional": EVERY[:6], "lite": (5, 6)},
+        },
+        (f"lite={lite}",),
+    )
+    plain = as_json(table)
+    assert [network["method"] for network in plain["networks"]] == ["conventional", "proposed", "lite"]
+    city, coast, whole = plain["others"]["lite"]  # of two maps one is left without City, which is no mean
+    assert [row["collisions"]["count"] for row in (city, coast, whole)] == [1, 2, 3]
+    assert whole["mean"] == pytest.approx(0.15)
+    counts = ("both", "first_only", "second_only", "neither")
+    against = whole["against"]
+    assert [against["conventional"]["mcnemar"][key] for key in counts] == [1, 13, 2, 4]
+    assert [against["proposed"]["mcnemar"][key] for key in counts] == [1, 2, 2, 15]
+    assert against["conventional"]["mcnemar"]["p"] == pytest.approx(2 * (1 + 15 + 105) / 2**15)
+    assert (against["conventional"]["other_is"], against["proposed"]["other_is"]) == ("lower", "open")
+
+    markdown, page = as_markdown(table), as_html(table)
+    assert "lite: litemono, 5 steps." in markdown
+    row = "| mean of all 2 | lite | 15.0 % (3/20; 5.2-36.0) | -55.0 (lower), 0.0074 (13 : 2) | +0.0 (open), 1 (2 : 2) |"
+    assert row in markdown
+    assert "-55.0 (lower)" in page and "p 0.0074 (13 : 2)" in page
+    assert "on the same missions</h2>" in page
+    assert any(line.pilot == "lite" for line in table.lines.values())
+
+
+def test_a_table_of_two_methods_says_nothing_of_others(table: Table2) -> None:
+    assert as_json(table)["others"] == {}
+    assert "Other networks" not in as_markdown(table) + as_html(table)
+
+
+def test_names_of_other_networks(tmp_path: Path) -> None:
+    lite = checkpoint(tmp_path / "rate=3" / "lite.pt", "pix2pix", **LITE)
+    (unnamed,) = others([str(lite)])
+    assert (unnamed.name, unnamed.path, unnamed.flow) == ("litemono", lite, "none")
+    assert [other.name for other in others([f"a={lite}", str(lite)])] == ["a", "litemono"]
+
+
 def test_a_network_that_may_have_seen_the_worlds_is_said_so(tmp_path: Path) -> None:
     table = made_up(tmp_path, {"field": {}})
     object.__setattr__(table.job, "dataset", {"name": "x", "version": "1.0.0", "content_id": "another"})
@@ -148,7 +193,8 @@ def test_mistakes_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
     good = checkpoint(tmp_path / "a.pt", "pix2pix"), checkpoint(tmp_path / "b.pt", "pix2pix-flow")
     both = ["--conventional", str(good[0]), "--proposed", str(good[1])]
     wide = checkpoint(tmp_path / "wide.pt", "pix2pix-flow", camera={**CAMERA, "width_px": 48})
-    lite = checkpoint(tmp_path / "lite.pt", "pix2pix", architecture="litemono", knobs={"width": 0.25})
+    lite = checkpoint(tmp_path / "lite.pt", "pix2pix", **LITE)
+    wide_lite = checkpoint(tmp_path / "wide_lite.pt", "pix2pix", **LITE, camera={**CAMERA, "width_px": 48})
     true = checkpoint(tmp_path / "true.pt", "pix2pix-flow", flow="truth")
     text = tmp_path / "text.pt"
     text.write_text("no network")
@@ -164,6 +210,14 @@ def test_mistakes_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str
         ([*both[:2], "--proposed", str(true)], "holds pix2pix with truth flow"),
         ([*both[:2], "--proposed", str(wide)], "trained on frames of 48x32 pixels, 90 deg"),
         ([*both, "--size", "64x64"], "add --size 32x32"),
+        ([*both, "--also", str(true)], "truth flow, which no drone has"),
+        ([*both, "--also", str(wide_lite)], "48x32"),
+        ([*both, "--also", str(good[0])], "is the conventional network itself"),
+        ([*both, "--also", str(lite), f"a={lite}"], "is the litemono network itself"),
+        ([*both, "--also", str(lite), str(wide_lite)], "the name 'litemono' is taken; say --also NAME="),
+        ([*both, "--also", f"blind={lite}"], "the name 'blind' is taken"),
+        ([*both, "--also", f"a b={lite}"], "'a b' is no name"),
+        ([*both, "--also", f"a={tmp_path / 'none.pt'}"], "no such file"),
         ([*both[:2], "--proposed", str(text)], "no torch file of weights"),
         ([*both[:2], "--proposed", str(tmp_path / "none.pt")], "no such file"),
         ([*both, "--map", "cty"], "unknown map 'cty'; perhaps you meant 'city'"),

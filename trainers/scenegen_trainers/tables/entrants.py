@@ -1,14 +1,16 @@
-"""The two networks of Table 2: the checkpoints that were given, looked at before anything is flown, or trained here."""
+"""The networks of Table 2: the checkpoints that were given, looked at before anything is flown, or trained here."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.errors import InputError
-from scenegen_trainers.models.checkpoint import read_checkpoint
+from scenegen_trainers.campaign.names import is_slug
+from scenegen_trainers.models.checkpoint import Checkpoint, read_checkpoint
+from scenegen_trainers.tables.names import BOUNDS
 from scenegen_trainers.tables.paper import ROWS, Row
 from scenegen_trainers.tables.table1 import Table1Job, finish_runs, run_name
 from scenegen_trainers.tables.table2_paper import METHODS, Method
@@ -27,7 +29,10 @@ class Entrant:
 
     Attributes
     ----------
-    method : "conventional" or "proposed"
+    name : str
+        "conventional", "proposed", or what another network is called in the table.
+    architecture, flow : str
+        Kind of network, and where its flow comes from.
     path : Path
         Of its checkpoint.
     camera : mapping
@@ -36,10 +41,17 @@ class Entrant:
         How it came to be; see `scenegen_trainers.models.checkpoint.Checkpoint`.
     """
 
-    method: Method
+    name: str
+    architecture: str
+    flow: str
     path: Path
     camera: Mapping[str, Any]
     record: Mapping[str, Any]
+
+    @property
+    def flag(self) -> str:
+        """How it was given on the command line."""
+        return f"--{self.name} {self.path}" if self.name in METHODS else f"--also {self.name}={self.path}"
 
     @property
     def recipe(self) -> Mapping[str, Any]:
@@ -68,7 +80,9 @@ class Entrant:
     def to_json(self) -> dict[str, Any]:
         """Plain data."""
         return {
-            "method": self.method,
+            "method": self.name,
+            "architecture": self.architecture,
+            "flow": self.flow,
             "w_l1": self.w_l1,
             "steps": self.steps,
             "camera": dict(self.camera),
@@ -94,26 +108,65 @@ def entrant(method: Method, path: Path) -> Entrant:
             f"{flag}: holds {found}; the {method} method is `scenegen train --model {_MODEL[method]}`, "
             f"pix2pix with {' or '.join(wanted).replace('none', 'no')} flow"
         )
-    return Entrant(method, path, checkpoint.camera, checkpoint.record)
+    return _entrant(method, path, checkpoint)
 
 
-def check_sizes(conventional: Entrant, proposed: Entrant) -> None:
-    """Both are to see the same frames.
+def others(words: Sequence[str]) -> tuple[Entrant, ...]:
+    """Look at checkpoints that fly along: any network of `scenegen train`.
+
+    Parameters
+    ----------
+    words : sequence of str
+        ``PATH`` or ``NAME=PATH``; without a name the kind of network is the name. A file that is there is a path.
+
+    Raises
+    ------
+    InputError
+        If a file is no such checkpoint, or a name cannot head a column or is taken.
+    """
+    found: list[Entrant] = []
+    for word in words:
+        name, equals, rest = word.partition("=")
+        named = bool(equals) and "/" not in name and not Path(word).is_file()
+        path = Path(rest if named else word)
+        checkpoint = read_checkpoint(path)
+        if checkpoint.network.inputs.flow == "truth":
+            raise InputError(f"--also {word}: holds a network with truth flow, which no drone has in flight")
+        name = name if named else checkpoint.network.architecture
+        if not is_slug(name):
+            raise InputError(f"--also {word}: '{name}' is no name; letters, digits and . _ = + , - make one")
+        if name in (*METHODS, *BOUNDS, *(other.name for other in found)):
+            raise InputError(f"--also {word}: the name '{name}' is taken; say --also NAME={path}")
+        found.append(_entrant(name, path, checkpoint))
+    return tuple(found)
+
+
+def _entrant(name: str, path: Path, checkpoint: Checkpoint) -> Entrant:
+    network = checkpoint.network
+    return Entrant(
+        name, network.architecture, network.inputs.flow, path, checkpoint.camera, checkpoint.record
+    )
+
+
+def check_sizes(first: Entrant, *rest: Entrant) -> None:
+    """All are to see the same frames.
 
     Raises
     ------
     InputError
         If they were trained on frames of different cameras.
     """
-    first, second = (
-        "{width_px}x{height_px} pixels, {hfov_deg:g} deg".format_map(e.camera)
-        for e in (conventional, proposed)
-    )
-    if first != second:
-        raise InputError(
-            f"--proposed {proposed.path}: was trained on frames of {second}, "
-            f"the conventional one on {first}; train both on one dataset"
-        )
+    wanted = _frames(first)
+    for other in rest:
+        if _frames(other) != wanted:
+            raise InputError(
+                f"{other.flag}: was trained on frames of {_frames(other)}, the {first.name} one on {wanted}; "
+                "train all on one dataset"
+            )
+
+
+def _frames(entrant: Entrant) -> str:
+    return "{width_px}x{height_px} pixels, {hfov_deg:g} deg".format_map(entrant.camera)
 
 
 def trained(

@@ -1,4 +1,4 @@
-"""Table 2: the conventional and the proposed method, oracle and blind, on the same missions over four maps."""
+"""Table 2: the conventional and the proposed method, oracle and blind, and whoever else, on the same missions."""
 
 from __future__ import annotations
 
@@ -8,53 +8,28 @@ from functools import cached_property
 from pathlib import Path
 from statistics import fmean
 from types import MappingProxyType
-from typing import Any
 
 from scenegen.foundation.errors import InputError
-from scenegen.maps.own_scene.own_scene import describe
-from scenegen.maps.registry import MAPS
-from scenegen_datasets.resolve import Source
-from scenegen_datasets.store import LOCK, read_lock
-from scenegen_flythrough.planners.registry import planner
 from scenegen_trainers.campaign import results as campaign_results
-from scenegen_trainers.campaign.recipe import FlightRecipe, resolve_flights
+from scenegen_trainers.campaign.recipe import FlightRecipe
+from scenegen_trainers.campaign.record import BatchRecord
 from scenegen_trainers.campaign.report.page import write_page
+from scenegen_trainers.campaign.results import Results
 from scenegen_trainers.campaign.run import Campaign, Progress, run
 from scenegen_trainers.campaign.statistics import Paired, Rate, mcnemar, wilson
 from scenegen_trainers.campaign.store import BASE_POINT
-from scenegen_trainers.campaign.summary import Line
+from scenegen_trainers.campaign.summary import Line, duel
 from scenegen_trainers.campaign.worker import check_pilot
-from scenegen_trainers.pilots.spec import parse_pilot
+from scenegen_trainers.pilots.spec import PilotSpec, parse_pilot
 from scenegen_trainers.tables.entrants import Entrant, check_sizes
-from scenegen_trainers.tables.table2_paper import LEFT_OUT, METHODS
+from scenegen_trainers.tables.names import BOUNDS
+from scenegen_trainers.tables.table2_paper import LEFT_OUT, METHODS, Method
 
 FLIGHTS_DIR = "flights"
 """The campaign, below the table's directory."""
 
-BOUNDS = ("oracle", "blind")
-"""What true depth and no eyes at all make of the same missions."""
-
 FLIGHTS: Mapping[str, int] = MappingProxyType({"ci": 6, "small": 100, "paper": 400})
 """Missions of each map, by profile."""
-
-_OURS = {"map": list(MAPS), "campaign": {"batches_per_world": 1}}
-"""All maps; a new world for every batch, because flights of one world share its streets."""
-
-_NOT_OURS = (
-    "pairs",
-    "map",
-    "scenes",
-    "layers",
-    "clips_per_world",
-    "pairs_per_clip",
-    "first_world",
-    "flight",
-    "splits",
-    "render",
-    "merged",
-    "sensed",
-)
-"""Keys of a dataset's recipe that its flights do not take over."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +40,7 @@ class Table2Job:
     ----------
     out : Path
     recipe : FlightRecipe
-        Of `flight_recipe`.
+        Of `scenegen_trainers.tables.table2_recipe.flight_recipe`.
     conventional, proposed : Entrant
     flights : int
         Missions of each map.
@@ -76,6 +51,8 @@ class Table2Job:
     dataset : mapping of str to str
         Whose test worlds these are; empty if none was named.
     allow_mixed : bool
+    others : tuple of Entrant
+        Further networks on the same missions, each held against both methods.
     """
 
     out: Path
@@ -88,6 +65,12 @@ class Table2Job:
     profile: str
     dataset: Mapping[str, str]
     allow_mixed: bool = False
+    others: tuple[Entrant, ...] = ()
+
+    @property
+    def entrants(self) -> tuple[Entrant, ...]:
+        """All networks: both methods, then the others."""
+        return self.conventional, self.proposed, *self.others
 
     @cached_property
     def campaign(self) -> Campaign:
@@ -98,11 +81,10 @@ class Table2Job:
         InputError
             If the checkpoints do not fit the camera or each other.
         """
-        check_sizes(self.conventional, self.proposed)
-        words = (str(self.conventional.path), str(self.proposed.path), *BOUNDS)
+        check_sizes(*self.entrants)
+        words = (*(str(entrant.path) for entrant in self.entrants), *BOUNDS)
         pilots = tuple(parse_pilot(word, self.planner) for word in words)
-        if pilots[0].sha256 == pilots[1].sha256:
-            raise InputError(f"--proposed {self.proposed.path}: is the conventional network itself")
+        self._refuse_twins(pilots)
         for spec in pilots:
             check_pilot(spec, self.recipe)
         return Campaign(
@@ -113,8 +95,16 @@ class Table2Job:
             root=self.out / FLIGHTS_DIR,
             processes=self.processes,
             allow_mixed=self.allow_mixed,
-            names=(*METHODS, *BOUNDS),
+            names=(*(entrant.name for entrant in self.entrants), *BOUNDS),
         )
+
+    def _refuse_twins(self, pilots: Sequence[PilotSpec]) -> None:
+        """One network twice would be one pilot with two names."""
+        names: dict[str, str] = {}
+        for entrant, spec in zip(self.entrants, pilots, strict=False):
+            if spec.sha256 in names:
+                raise InputError(f"{entrant.flag}: is the {names[spec.sha256]} network itself")
+            names[spec.sha256] = entrant.name
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,15 +116,16 @@ class Table2:
     job : Table2Job
     lines : mapping of (str, str) to Line
         By map and pilot.
-    duels : mapping of str to Paired
-        Conventional against proposed, by map.
+    duels : mapping of (str, str, str) to Paired
+        Mission by mission, by map and the two compared: conventional against proposed, and each method against each
+        other network.
     failed : mapping of str to str
         Batches that could not be flown, and why.
     """
 
     job: Table2Job
     lines: Mapping[tuple[str, str], Line]
-    duels: Mapping[str, Paired]
+    duels: Mapping[tuple[str, str, str], Paired]
     failed: Mapping[str, str]
 
     @property
@@ -157,53 +148,17 @@ class Table2:
         rates = [self.lines[map, pilot].collision for map in maps]
         return fmean(rate.share for rate in rates) if rates and all(rate.of for rate in rates) else None
 
-    def paired(self, maps: Iterable[str]) -> Paired:
-        """Both methods over some maps together, mission by mission."""
-        duels = [self.duels[map] for map in maps]
-        first, second = sum(d.first_only for d in duels), sum(d.second_only for d in duels)
+    def paired(self, maps: Iterable[str], first: Method = METHODS[0], second: str = METHODS[1]) -> Paired:
+        """Two networks over some maps together, mission by mission; both methods unless others are named."""
+        duels = [self.duels[map, first, second] for map in maps]
+        only_first, only_second = sum(d.first_only for d in duels), sum(d.second_only for d in duels)
         return Paired(
-            sum(d.both for d in duels), first, second, sum(d.neither for d in duels), mcnemar(first, second)
+            sum(d.both for d in duels),
+            only_first,
+            only_second,
+            sum(d.neither for d in duels),
+            mcnemar(only_first, only_second),
         )
-
-
-def flight_recipe(
-    asked: Sequence[Source], camera: Mapping[str, Any] | None, data: Path | None
-) -> FlightRecipe:
-    """Where, when and with what camera is flown.
-
-    Parameters
-    ----------
-    asked : sequence of Source
-        File and flags, from weakest to strongest.
-    camera : mapping or None
-        That of the checkpoints.
-    data : Path or None
-        Dataset whose seed, climate, camera and sensor count, below `asked`: its test worlds are flown, in the hours and
-        weather it does not hold out unless `asked` says otherwise (`campaign.conditions`).
-
-    Raises
-    ------
-    InputError
-        In one line, naming file and key.
-    """
-    sources = [Source("table2", _OURS)]
-    if camera is not None:
-        sources.append(Source("the checkpoints", {"camera": dict(camera)}))
-    if data is not None:
-        recipe_of_data = read_lock(data)["recipe"]
-        kept = {key: value for key, value in recipe_of_data.items() if key not in _NOT_OURS}
-        held = recipe_of_data.get("splits") or {}
-        kept["splits"] = {key: held[key] for key in ("test_hours", "test_weather") if held.get(key)}
-        sources.append(Source(str(data / LOCK), kept))
-    recipe = resolve_flights([*sources, *asked])
-    for scene in recipe.dataset.scenes.values():
-        describe(scene)
-    return recipe
-
-
-def check_planner(name: str, recipe: FlightRecipe) -> None:
-    """Say early what is wrong with a planner's name."""
-    planner(name, recipe.loop)
 
 
 def run_table2(job: Table2Job, told: Callable[[Progress], None] = lambda progress: None) -> Table2:
@@ -225,5 +180,23 @@ def run_table2(job: Table2Job, told: Callable[[Progress], None] = lambda progres
     found = campaign_results.gather(campaign)
     campaign_results.write(campaign, found)
     write_page(campaign, found)
+    return tabled(job, found, failed)
+
+
+def tabled(job: Table2Job, found: Results, failed: Mapping[str, str]) -> Table2:
+    """The table that the results of a job's campaign make."""
     lines = {(line.map, line.pilot): line for line in found.lines}
-    return Table2(job, lines, {duel.map: duel.paired for duel in found.duels}, failed)
+    pairs: list[tuple[str, str]] = [
+        METHODS,
+        *((method, other.name) for other in job.others for method in METHODS),
+    ]
+    duels = {
+        (map, *pair): duel(BASE_POINT, map, *((name, _records(found, map, name)) for name in pair)).paired
+        for map in job.recipe.dataset.map
+        for pair in pairs
+    }
+    return Table2(job, lines, duels, failed)
+
+
+def _records(found: Results, map: str, name: str) -> list[BatchRecord]:
+    return [record for _, record in found.flown[BASE_POINT, map, name]]

@@ -21,11 +21,13 @@ from scenegen_trainers.campaign.statistics import CONFIDENCE, Rate
 from scenegen_trainers.campaign.store import PAGE
 from scenegen_trainers.campaign.summary import Line, rate_json
 from scenegen_trainers.tables import table2_text as words
-from scenegen_trainers.tables.table2 import BOUNDS, FLIGHTS_DIR, Table2
+from scenegen_trainers.tables.names import BOUNDS
+from scenegen_trainers.tables.table2 import FLIGHTS_DIR, Table2
 from scenegen_trainers.tables.table2_paper import (
     METHODS,
     PRINTED_AVERAGE,
     PUBLISHED,
+    Method,
     published_mean,
     published_words,
 )
@@ -58,12 +60,13 @@ def as_json(table: Table2) -> dict[str, Any]:
         "confidence": CONFIDENCE,
         "planner": job.planner,
         "dataset": dict(job.dataset),
-        "networks": [entrant.to_json() for entrant in (job.conventional, job.proposed)],
+        "networks": [entrant.to_json() for entrant in job.entrants],
         "recipe": job.recipe.canonical(),
         "maps": {map: _compared(table, (map,)) | {"paper": _published(map)} for map in table.maps},
         "all_maps": _compared(table, table.maps) | {"paper_mean_percent": _means(table.maps)},
         "without_city": _compared(table, table.averaged)
         | {"paper_mean_percent": _means(table.averaged), "paper_prints_percent": dict(PRINTED_AVERAGE)},
+        "others": {other.name: _held_against(table, other.name) for other in job.others},
         "lines": [line.to_json() for line in table.lines.values()],
         "failed": dict(table.failed),
         "warnings": words.warnings(table),
@@ -79,6 +82,23 @@ def _compared(table: Table2, maps: Sequence[str]) -> dict[str, Any]:
         "mcnemar": asdict(paired),
         "proposed_is": words.verdict(paired),
     }
+
+
+def _held_against(table: Table2, name: str) -> list[dict[str, Any]]:
+    """Another network against both methods: each map, then the means."""
+    return [
+        {
+            "maps": list(maps),
+            "collisions": rate_json(table.rate(name, maps)),
+            "mean": table.mean(name, maps),
+            "against": {
+                method: {"mcnemar": asdict(paired), "other_is": words.verdict(paired)}
+                for method in METHODS
+                for paired in [table.paired(maps, method, name)]
+            },
+        }
+        for _, maps in words.scopes(table)
+    ]
 
 
 def _published(map: str) -> dict[str, Any] | None:
@@ -114,6 +134,7 @@ def as_html(table: Table2) -> str:
         drawn(heads, _rows(table)),
         element("p", words.NOTE, class_="small"),
         element("p", words.AVERAGES, class_="small"),
+        *_others(table),
         element("h2", "How flights ended"),
         key([(END_COLOUR[kind], word) for kind, word in END_WORDS.items()]),
         drawn(ends, [_end_row(map, pilot, line) for (map, pilot), line in table.lines.items()]),
@@ -123,12 +144,7 @@ def as_html(table: Table2) -> str:
 
 def _rows(table: Table2) -> list[list[object]]:
     """One row per map, then the means; the paper's figures below ours."""
-    rows = [_row(table, map, (map,)) for map in table.maps]
-    if len(table.maps) > 1:
-        rows.append(_row(table, f"mean of all {len(table.maps)}", table.maps))
-    if 1 < len(table.averaged) < len(table.maps):
-        rows.append(_row(table, "without city, as the paper averages", table.averaged))
-    return rows
+    return [_row(table, name, maps) for name, maps in words.scopes(table)]
 
 
 def _row(table: Table2, name: str, maps: Sequence[str]) -> list[object]:
@@ -137,14 +153,44 @@ def _row(table: Table2, name: str, maps: Sequence[str]) -> list[object]:
         _rate(table.rate(pilot, maps), table.mean(pilot, maps), _COLOUR[pilot], theirs.get(pilot))
         for pilot in PILOTS
     ]
-    paired = table.paired(maps)
-    apart = join(
+    return [element("b", name), *rates[:2], _apart(table, maps, *METHODS), *rates[2:]]
+
+
+def _others(table: Table2) -> list[Html]:
+    """Networks beyond the two methods; nothing where there are none."""
+    if not table.job.others:
+        return []
+    rows: list[list[object]] = [
         [
-            element("span", words.difference(table, maps), class_=_APART[words.verdict(paired)]),
+            element("b", name),
+            other.name,
+            _rate(table.rate(other.name, maps), table.mean(other.name, maps), SERIES[2], None),
+            *(_apart(table, maps, method, other.name) for method in METHODS),
+        ]
+        for name, maps in words.scopes(table)
+        for other in table.job.others
+    ]
+    heads = ("map", "network", "collision rate", *(f"less {method}" for method in METHODS))
+    return [
+        element("h2", words.OTHERS_TITLE),
+        drawn(heads, rows),
+        element("p", words.OTHERS_NOTE, class_="small"),
+    ]
+
+
+def _apart(table: Table2, maps: Sequence[str], first: Method, second: str) -> Html:
+    """Second less first, and whether flights tell them apart."""
+    paired = table.paired(maps, first, second)
+    return join(
+        [
+            element(
+                "span",
+                words.difference(table, maps, first, second),
+                class_=_APART[words.verdict(paired)],
+            ),
             element("div", f"p {words.p_words(paired)}", class_="small"),
         ]
     )
-    return [element("b", name), *rates[:2], apart, *rates[2:]]
 
 
 def _rate(rate: Rate, mean: float | None, colour: str, theirs: float | None) -> Html:

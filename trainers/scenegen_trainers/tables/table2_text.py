@@ -9,7 +9,8 @@ from scenegen_trainers.campaign.statistics import Paired, Rate
 from scenegen_trainers.campaign.summary import KINDS, Line, Spread
 from scenegen_trainers.evaluation.scores import markdown
 from scenegen_trainers.tables.entrants import Entrant
-from scenegen_trainers.tables.table2 import BOUNDS, Table2
+from scenegen_trainers.tables.names import BOUNDS
+from scenegen_trainers.tables.table2 import Table2
 from scenegen_trainers.tables.table2_paper import (
     LEFT_OUT,
     METHODS,
@@ -57,7 +58,7 @@ def about(table: Table2) -> str:
         else "no dataset in particular"
     )
     return (
-        f"{_network(job.conventional)}. {_network(job.proposed)}. "
+        f"{' '.join(f'{_network(entrant)}.' for entrant in job.entrants)} "
         f"{counted(worlds, f'{recipe.campaign.split} world')} of seed "
         f"{recipe.dataset.seed} ({where}), camera {camera.width_px}x{camera.height_px}, {camera.hfov_deg:g} deg, NETD "
         f"{recipe.dataset.sensor.netd_mk:g} mK; planner {job.planner}, cruise {loop.cruise_mps:g} m/s, {late}."
@@ -68,10 +69,10 @@ def warnings(table: Table2) -> list[str]:
     """What a reader has to know before any figure."""
     said = []
     seen = table.job.dataset.get("content_id")
-    for entrant in (table.job.conventional, table.job.proposed):
+    for entrant in table.job.entrants:
         if seen and entrant.content_id != seen:
             said.append(
-                f"The {entrant.method} network was trained on another dataset than the one whose test worlds are "
+                f"The {entrant.name} network was trained on another dataset than the one whose test worlds are "
                 "flown; it may have seen them."
             )
     if table.failed:
@@ -84,24 +85,53 @@ MAIN_HEAD = (
 )  # fmt: skip
 
 
+def scopes(table: Table2) -> list[tuple[str, tuple[str, ...]]]:
+    """What there is a row for, and over which maps: each map, then the means."""
+    found: list[tuple[str, tuple[str, ...]]] = [(map, (map,)) for map in table.maps]
+    if len(table.maps) > 1:
+        found.append((f"mean of all {len(table.maps)}", table.maps))
+    if 1 < len(table.averaged) < len(table.maps):
+        found.append((f"without {LEFT_OUT}", table.averaged))
+    return found
+
+
 def main_rows(table: Table2) -> list[Cells]:
     """One row per map, then the means."""
-    rows = [_row(table, map, (map,), [_published(map, method) for method in METHODS]) for map in table.maps]
-    whole = f"mean of all {len(table.maps)}" if len(table.maps) > 1 else ""
-    if whole:
-        rows.append(_row(table, whole, table.maps, [_mean(method, table.maps) for method in METHODS]))
-    if whole and 1 < len(table.averaged) < len(table.maps):
-        theirs = [_mean(method, table.averaged) for method in METHODS]
-        rows.append(_row(table, f"without {LEFT_OUT}", table.averaged, theirs))
-    return rows
+    return [_row(table, name, maps) for name, maps in scopes(table)]
 
 
-def _row(table: Table2, name: str, maps: Sequence[str], paper: Cells) -> Cells:
-    paired = table.paired(maps)
-    conventional, proposed, *bounds = (
-        rate_words(table.rate(pilot, maps), table.mean(pilot, maps)) for pilot in (*METHODS, *BOUNDS)
-    )
-    return [name, conventional, proposed, difference(table, maps), p_words(paired), *paper, *bounds]
+def _row(table: Table2, name: str, maps: Sequence[str]) -> Cells:
+    paper = [_published(name, method) if maps == (name,) else _mean(method, maps) for method in METHODS]
+    conventional, proposed, *bounds = (_rate(table, pilot, maps) for pilot in (*METHODS, *BOUNDS))
+    apart = p_words(table.paired(maps))
+    return [name, conventional, proposed, difference(table, maps), apart, *paper, *bounds]
+
+
+OTHERS_TITLE = "Other networks on the same missions"
+OTHERS_HEAD = ("map", "network", "collisions", *(f"against {m}, McNemar p" for m in METHODS))
+OTHERS_NOTE = (
+    "Networks beyond the paper, held against both methods on the same missions: points of collision rate, p, and the "
+    "missions on which only the method and only the other network collided."
+)
+
+
+def other_rows(table: Table2) -> list[Cells]:
+    """One row per map and mean for every network beyond the two methods."""
+    return [
+        [name, other.name, _rate(table, other.name, maps), *(against(table, maps, m, other) for m in METHODS)]
+        for name, maps in scopes(table)
+        for other in table.job.others
+    ]
+
+
+def against(table: Table2, maps: Sequence[str], method: Method, other: Entrant) -> str:
+    """``-8.0 (lower), 0.02 (31 : 14)``: another network less a method."""
+    paired = table.paired(maps, method, other.name)
+    return f"{difference(table, maps, method, other.name)}, {p_words(paired)}"
+
+
+def _rate(table: Table2, pilot: str, maps: Sequence[str]) -> str:
+    return rate_words(table.rate(pilot, maps), table.mean(pilot, maps))
 
 
 def rate_words(rate: Rate, mean: float | None) -> str:
@@ -112,23 +142,25 @@ def rate_words(rate: Rate, mean: float | None) -> str:
     return f"{100 * share:.1f} % ({rate.count}/{rate.of}; {100 * rate.low:.1f}-{100 * rate.high:.1f})"
 
 
-def difference(table: Table2, maps: Sequence[str]) -> str:
-    """Proposed less conventional, in points, and whether flights tell them apart."""
-    ours = [table.mean(method, maps) for method in METHODS]
-    if ours[0] is None or ours[1] is None:
+def difference(
+    table: Table2, maps: Sequence[str], first: Method = METHODS[0], second: str = METHODS[1]
+) -> str:
+    """Second less first, in points, and whether flights tell them apart; proposed less conventional by default."""
+    one, other = table.mean(first, maps), table.mean(second, maps)
+    if one is None or other is None:
         return "-"
-    return f"{100 * (ours[1] - ours[0]):+.1f} ({verdict(table.paired(maps))})"
+    return f"{100 * (other - one):+.1f} ({verdict(table.paired(maps, first, second))})"
 
 
 def verdict(paired: Paired) -> str:
-    """ "lower", "higher" or "open": what flights say about the proposed method."""
+    """ "lower", "higher" or "open": what flights say about the second of two networks."""
     if paired.p >= LEVEL:
         return "open"
     return "lower" if paired.second_only < paired.first_only else "higher"
 
 
 def p_words(paired: Paired) -> str:
-    """``0.031 (14 : 4)``: p, and the missions on which only the conventional or only the proposed one collided."""
+    """``0.031 (14 : 4)``: p, and the missions on which only the first or only the second one collided."""
     return f"{paired.p:.2g} ({paired.first_only} : {paired.second_only})"
 
 
@@ -189,13 +221,19 @@ def as_markdown(table: Table2) -> str:
     """A page."""
     parts = [f"# {title(table)}", about(table), *(f"**{said}**" for said in warnings(table))]
     parts += [markdown(MAIN_HEAD, main_rows(table)), NOTE, AVERAGES]
+    if table.job.others:
+        parts += [f"## {OTHERS_TITLE}", markdown(OTHERS_HEAD, other_rows(table)), OTHERS_NOTE]
     parts += ["## How flights ended", markdown(ENDS_HEAD, end_rows(table))]
     return "\n\n".join(parts) + "\n"
 
 
 def _network(entrant: Entrant) -> str:
-    w_l1 = "an unknown w_L1" if entrant.w_l1 is None else f"w_L1 = {entrant.w_l1:g}"
-    steps = "" if entrant.steps is None else f", {entrant.steps:,} steps"
-    inputs = entrant.recipe.get("inputs", {})
-    flow = "" if entrant.method == "conventional" else f", {inputs.get('flow', 'some')} flow"
-    return f"{entrant.method.capitalize()}: pix2pix, {w_l1}{flow}{steps}"
+    said = [entrant.architecture]
+    if entrant.architecture == "pix2pix":
+        said.append("an unknown w_L1" if entrant.w_l1 is None else f"w_L1 = {entrant.w_l1:g}")
+    if entrant.flow != "none":
+        said.append(f"{entrant.flow} flow")
+    if entrant.steps is not None:
+        said.append(f"{entrant.steps:,} steps")
+    name = entrant.name.capitalize() if entrant.name in METHODS else entrant.name
+    return f"{name}: {', '.join(said)}"

@@ -23,7 +23,7 @@ from scenegen_datasets.place import make_directory
 from scenegen_trainers.evaluation.answers import Answer, answers
 from scenegen_trainers.evaluation.pictures import answer_sheet
 from scenegen_trainers.inputs.target import decode
-from scenegen_trainers.metrics import DepthMeter
+from scenegen_trainers.metrics import DepthMeter, ValidDepth
 from scenegen_trainers.models.checkpoint import write_checkpoint
 from scenegen_trainers.models.learner import Batch, Learner
 from scenegen_trainers.models.registry import ARCHITECTURES
@@ -183,7 +183,7 @@ class _School:
         """Scores on the validation split, and a picture of some answers."""
         network, target = self.learner.network.module, self.recipe.target
         network.eval()
-        meter = DepthMeter()
+        meter = DepthMeter(ValidDepth(furthest_m=target.cap_m))
         shown: list[tuple[str, Answer]] = []
         some = set(range(0, len(self.judged), max(1, len(self.judged) // _SHOWN)))
         for answer in answers(

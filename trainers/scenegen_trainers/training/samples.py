@@ -16,12 +16,12 @@ from jaxtyping import Float32, Int64, UInt8
 from scenegen.foundation.errors import InputError
 from scenegen.foundation.rng import stream
 from scenegen_datasets.loader import PREVIOUS, PairDataset
+from scenegen_datasets.sensing.retake import Retake
 from scenegen_trainers.inputs.knobs import InputKnobs, TargetKnobs
 from scenegen_trainers.inputs.look import Look, centred, compose, look
 from scenegen_trainers.inputs.target import check_truth, encode
 from scenegen_trainers.models.learner import Batch
 from scenegen_trainers.training.recipe import TrainingKnobs
-from scenegen_trainers.training.redraw import Redrawn
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Samples:
         So many, evenly spread; 0 takes all.
     keep : bool
         Keep composed inputs in memory: flow is computed once.
-    redrawn : Redrawn, optional
+    redrawn : Retake, optional
         Senses thermal frames anew at every epoch; nothing is kept then.
     mirror_embedded : bool
         Mirror what is composed, grid and all, instead of composing what is mirrored.
@@ -79,7 +79,7 @@ class Samples:
         inputs: InputKnobs,
         pairs: int = 0,
         keep: bool = False,
-        redrawn: Redrawn | None = None,
+        redrawn: Retake | None = None,
         mirror_embedded: bool = False,
     ) -> None:
         self.inputs, self._mirror_embedded = inputs, mirror_embedded

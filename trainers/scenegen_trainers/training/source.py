@@ -9,10 +9,10 @@ from typing import Any
 from scenegen.foundation.errors import InputError
 from scenegen_datasets.description import read_description
 from scenegen_datasets.loader import PairDataset
+from scenegen_datasets.sensing.retake import Retake
 from scenegen_datasets.store import DATASET
 from scenegen_trainers.pilots.camera_check import frames_of
 from scenegen_trainers.training.recipe import TrainingRecipe
-from scenegen_trainers.training.redraw import Redrawn
 from scenegen_trainers.training.samples import Samples
 
 
@@ -60,7 +60,7 @@ class TrainingData:
     ) -> Samples:
         """A split as a recipe's network is shown it; with `stored`, frames as stored, whatever the recipe."""
         redraw = recipe.training.noise == "redrawn" and not stored
-        redrawn = Redrawn.of(self.root, self.band_um, recipe.seed) if redraw else None
+        redrawn = Retake.of(self.root, self.band_um, recipe.seed) if redraw else None
         embedded = recipe.training.mirror == "embedded"
         return Samples(self.root, split, recipe.inputs, pairs, keep, redrawn, embedded)
 
