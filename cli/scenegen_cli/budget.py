@@ -10,6 +10,7 @@ from typing import Annotated
 import tyro
 
 from scenegen.foundation.errors import InputError
+from scenegen.foundation.words import counted
 from scenegen_cli.console import note, say, say_json, table
 from scenegen_cli.parse import parse, parse_size
 from scenegen_cli.teaching import need_torch
@@ -56,7 +57,7 @@ def run(arguments: Sequence[str]) -> int:
     for entry, _ in budget(networks, command.threads, command.repeats):
         entries.append(entry)
         if not command.json:
-            note(f"{entry.model}, {entry.cost.threads} thread(s)")
+            note(f"{entry.model}, {counted(entry.cost.threads, 'thread')}")
     if command.json:
         say_json([entry.to_json() for entry in entries])
         return 0

@@ -80,6 +80,14 @@ def test_a_finished_training_is_left_alone(toy: Path, tmp_path: Path) -> None:
     assert path.stat().st_mtime_ns == before
 
 
+def test_a_network_that_was_removed_is_made_anew(toy: Path, tmp_path: Path) -> None:
+    path = taught(toy, tmp_path / "a")
+    before = path.read_bytes(), (tmp_path / "a" / "log.csv").read_bytes()
+    path.unlink()
+    taught(toy, tmp_path / "a")
+    assert (path.read_bytes(), (tmp_path / "a" / "log.csv").read_bytes()) == before
+
+
 def test_another_training_is_not_overwritten(toy: Path, tmp_path: Path) -> None:
     taught(toy, tmp_path / "a")
     with pytest.raises(InputError, match=r"another pix2pix\.w_l1 \(100\.0, now 300\.0\)"):
@@ -208,6 +216,9 @@ def test_what_is_no_checkpoint_is_refused_in_one_line(toy: Path, tmp_path: Path)
         read_checkpoint(tmp_path / "other.pt")
     torch.save({**content, "record": None}, tmp_path / "other.pt")
     with pytest.raises(InputError, match="its key 'record' is missing"):
+        read_checkpoint(tmp_path / "other.pt")
+    torch.save({**content, "camera": {"width_px": 32, "height_px": 32}}, tmp_path / "other.pt")
+    with pytest.raises(InputError, match="does not say the 'hfov_deg' of the frames"):
         read_checkpoint(tmp_path / "other.pt")
     torch.save({**content, "network": "torch.nn:Identity"}, tmp_path / "other.pt")
     with pytest.raises(InputError, match=r"holds 'torch\.nn:Identity', no network of `scenegen train`"):

@@ -13,6 +13,8 @@ from scenegen_trainers.models.torch_file import PROTOCOL, built, network_content
 
 NETWORK = f"{DepthNetwork.__module__}:{DepthNetwork.__qualname__}"
 
+_FRAMES = ("width_px", "height_px", "hfov_deg")
+
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
@@ -79,4 +81,7 @@ def read_checkpoint(path: Path) -> Checkpoint:
     for key in ("camera", "record"):
         if not isinstance(content.get(key), Mapping):
             raise InputError(f"{path}: its key '{key}' is missing or of the wrong kind")
+    for key in _FRAMES:
+        if not isinstance(content["camera"].get(key), int | float):
+            raise InputError(f"{path}: does not say the '{key}' of the frames it was trained on")
     return Checkpoint(built(path, content), dict(content["camera"]), dict(content["record"]))

@@ -98,7 +98,9 @@ def train(
         fabric.launch()
         identity = {"recipe": recipe.deciding(), "dataset": data.content_id}
         state = read_state(out, identity)
-        if state is None or state["step"] < recipe.training.steps or not (out / MODEL).is_file():
+        if state is not None and not state["learner"] and not (out / MODEL).is_file():
+            state = None  # a finished training keeps its weights in the network alone: that is made anew
+        if state is None or state["step"] < recipe.training.steps:
             _School(recipe, data, out, fabric, machine.precision, identity).teach(state, watch)
     return out / MODEL
 
