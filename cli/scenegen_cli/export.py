@@ -11,6 +11,7 @@ from typing import Annotated
 
 import tyro
 
+from scenegen.foundation.words import counted
 from scenegen_cli.console import note, say, say_json, size
 from scenegen_cli.leaving import TerminatedError
 from scenegen_cli.parse import parse
@@ -22,7 +23,7 @@ _DEFAULT = Options()
 
 @dataclass(frozen=True)
 class Export:
-    """Export a dataset. Run again to continue an export that was interrupted."""
+    """Export a dataset. Run again to go on after an interruption, or when the dataset has grown."""
 
     dataset: Annotated[Path, tyro.conf.Positional]
     """Directory of a finished dataset."""
@@ -81,8 +82,10 @@ def run(arguments: Sequence[str]) -> int:
         return 0
     for words in outcome.words:
         say(words)
+    there = outcome.clips - outcome.made
     say(
-        f"{outcome.root}: {outcome.frames:,} frames of {outcome.clips:,} clips as {outcome.to}, {size(outcome.bytes)}"
+        f"{outcome.root}: {outcome.frames:,} frames of {counted(outcome.clips, 'clip')} as {outcome.to}, "
+        f"{size(outcome.bytes)}" + (f"; {counted(there, 'clip')} had been there" if there else "")
     )
     return 0
 

@@ -2,7 +2,6 @@
 
 import json
 import signal
-import time
 from pathlib import Path
 
 import pytest
@@ -18,9 +17,11 @@ def test_one_command_exports_what_its_consumer_reads(
     out = tmp_path / "out"
     command = ["export", str(finished_dataset), "--to", "kitti", "--out", str(out), "--jobs", "2"]
     assert main([*command, "--gain", "fixed", "--gain-K", "230", "340"]) == 0
-    assert "frames of" in capsys.readouterr().out
+    assert "frames of 4 clips as kitti" in capsys.readouterr().out
     compared, errors = check("kitti", out, finished_dataset)
     assert compared == small.PAIRS and errors["flow_px"] <= 1 / 128 and errors["depth_m"] <= 1 / 512
+    assert main([*command, "--gain", "fixed", "--gain-K", "230", "340"]) == 0
+    assert "; 4 clips had been there" in capsys.readouterr().out
     assert main([*command, "--gain", "ground"]) == 2
     assert "options.gain" in capsys.readouterr().err
 
@@ -42,16 +43,12 @@ def test_json_and_default_place(
 def test_killed_in_the_middle_and_run_again(finished_dataset: Path, tmp_path: Path) -> None:
     arguments = ["export", str(finished_dataset), "--to", "exr", "--jobs", "2", "--out"]
     process = small.start([*arguments, str(tmp_path / "out")])
-    deadline = time.monotonic() + 60
-    while process.poll() is None and not list((tmp_path / "out").glob("*/*/*.exr")):
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
+    out = tmp_path / "out"
+    assert small.until(lambda: process.poll() is not None or list(out.glob("*/*/*.exr")))
     workers = small.children(process.pid)
     process.send_signal(signal.SIGKILL)
     process.communicate()
-    while any(map(small.alive, workers)):
-        assert time.monotonic() < deadline
-        time.sleep(0.01)
+    assert small.gone(workers)
     assert main([*arguments, str(tmp_path / "out")]) == 0
     assert check("exr", tmp_path / "out", finished_dataset)[0] == small.PAIRS
 

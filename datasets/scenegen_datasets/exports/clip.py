@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -49,6 +50,15 @@ class Picture:
         return self.arrays[layer]
 
 
+def clip_sha256(source: Source, position: int) -> str:
+    """SHA-256 of a clip's line in ``clips.jsonl``.
+
+    The line holds all facts of the clip and the hash of its shard, and a format reads nothing else: where the sum is
+    the same, so is every byte a format writes of the clip.
+    """
+    return hashlib.sha256(source.lines[position]).hexdigest()
+
+
 class Clip:
     """One clip of a finished dataset.
 
@@ -65,6 +75,8 @@ class Clip:
     job : ClipJob
     layers : tuple of str
         Layers that are stored.
+    sha256 : str
+        `clip_sha256`.
     """
 
     def __init__(self, source: Source, reader: ShardReader, position: int) -> None:
@@ -72,6 +84,7 @@ class Clip:
         self._start = int(source.starts[position])
         self.job: ClipJob = job_of(checked(source.rows[self._start]))
         self.layers = source.layers
+        self.sha256 = clip_sha256(source, position)
 
     @cached_property
     def facts(self) -> Mapping[str, Any]:

@@ -24,6 +24,7 @@ from scenegen_datasets.exports.marker import (
     claim,
     clean,
     read_marker,
+    refuse_others,
 )
 from scenegen_datasets.exports.plan import Plan, Request, plan_of
 from scenegen_datasets.exports.stage import Stage
@@ -70,9 +71,9 @@ class Outcome:
 
 
 def export(request: Request, processes: int = 1, told: Told | None = None) -> Outcome:
-    """Export a dataset, or what is missing of an export.
+    """Export a dataset, or what is missing of an export: it was interrupted, files are gone, or the dataset has grown.
 
-    The files depend on dataset, format and options alone, not on `processes` or on interruptions.
+    The files depend on dataset, format and options alone, not on `processes`, on interruptions or on growth.
 
     Parameters
     ----------
@@ -97,6 +98,7 @@ def export(request: Request, processes: int = 1, told: Told | None = None) -> Ou
     with DirectoryLock(root):
         claim(root, plan.identity)
         clean(root)
+        refuse_others(root, plan.sums)
         markers = {job.name: read_marker(root, job.name) for job in plan.jobs}
         missing = [k for k, job in enumerate(plan.jobs) if markers[job.name] is None]
         if missing:
@@ -209,6 +211,7 @@ def _summary(plan: Plan, outcome: Outcome) -> dict[str, Any]:
     names = ("name", "readers", "layout", "range", "step", "lost", "sky")
     return {
         **plan.identity,
+        "content_id": plan.description["content_id"],
         "version": plan.description["version"],
         "license": licence_of(plan.description),
         "format": dict(zip(names, row, strict=True)),

@@ -33,10 +33,13 @@ class Marker:
     files : mapping of str to int
         Size of every file by its path below the export.
     written : Written
+    clip : str
+        Sum of the clip it was made from, `scenegen_datasets.exports.clip.clip_sha256`.
     """
 
     files: Mapping[str, int]
     written: Written
+    clip: str
 
 
 def claim(root: Path, identity: Mapping[str, Any]) -> None:
@@ -63,10 +66,39 @@ def claim(root: Path, identity: Mapping[str, Any]) -> None:
         raise InputError(f"{root} holds another export ({'; '.join(differing[:6])}); choose another --out")
 
 
+def refuse_others(root: Path, sums: Mapping[str, str]) -> None:
+    """Refuse to go on where a clip is kept that the dataset does not hold, or holds another of its name.
+
+    Parameters
+    ----------
+    root : Path
+        Of the export.
+    sums : mapping of str to str
+        `clip_sha256` of every clip to export, by name.
+
+    Raises
+    ------
+    InputError
+        Naming the clip.
+    """
+    for path in sorted((root / _CLIPS).glob("[!.]*.json")):
+        name, marker = path.stem, _proof(path)
+        if name not in sums:
+            raise InputError(
+                f"{root} holds {name}, which is not asked for or not there; choose another --out"
+            )
+        if marker is not None and marker.clip != sums[name]:
+            raise InputError(
+                f"{root} holds {name} as it was before it changed in the dataset; remove {root} and export again, "
+                "or choose another --out"
+            )
+
+
 def write_marker(root: Path, clip: str, marker: Marker) -> None:
     """Declare a clip whole; its files are already where they belong."""
     make_directories(root, _CLIPS)
     body = {
+        "clip": marker.clip,
         "files": dict(marker.files),
         "counts": dict(marker.written.counts),
         "facts": dict(marker.written.facts),
@@ -76,14 +108,12 @@ def write_marker(root: Path, clip: str, marker: Marker) -> None:
 
 def read_marker(root: Path, clip: str) -> Marker | None:
     """Marker of a clip, or None if it has none, a damaged one, or one whose files are gone or of other sizes."""
-    path = _path(root, clip)
-    if not path.is_file():
+    marker = _proof(_path(root, clip))
+    if marker is None:
         return None
     try:
-        body = unsealed("clip", read_bounded(path, _MAX_BYTES), str(path))
-        marker = Marker(body["files"], Written(body["counts"], body["facts"]))
         sizes = {name: (root / name).lstat().st_size for name in marker.files}
-    except (DatasetError, KeyError, OSError):
+    except OSError:
         return None
     return marker if sizes == marker.files else None
 
@@ -92,6 +122,17 @@ def clean(root: Path) -> None:
     """Remove unfinished markers of killed writers. Call it with the directory's lock held."""
     for directory in (root, root / FOLDER, root / _CLIPS):
         remove_partials(directory)
+
+
+def _proof(path: Path) -> Marker | None:
+    """What a marker says, or None if it is not there or damaged; its files are not looked at."""
+    if not path.is_file():
+        return None
+    try:
+        body = unsealed("clip", read_bounded(path, _MAX_BYTES), str(path))
+        return Marker(body["files"], Written(body["counts"], body["facts"]), body["clip"])
+    except (DatasetError, KeyError, OSError):
+        return None
 
 
 def _path(root: Path, clip: str) -> Path:

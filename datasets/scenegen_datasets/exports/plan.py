@@ -12,6 +12,7 @@ import numpy as np
 
 from scenegen.foundation.errors import InputError, nearest
 from scenegen_datasets.description import read_description
+from scenegen_datasets.exports.clip import clip_sha256
 from scenegen_datasets.exports.format import Format
 from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.registry import format_called
@@ -57,8 +58,10 @@ class Plan:
         Of the clips in the dataset, in plan order.
     jobs : tuple of ClipJob
         Of the same clips.
+    sums : mapping of str to str
+        `clip_sha256` by name of the clip.
     identity : mapping
-        By which a directory knows its export again.
+        By which a directory knows its export again; the same for a dataset that has grown.
     options : mapping
         `Options.heeded`.
     """
@@ -67,6 +70,7 @@ class Plan:
     description: Mapping[str, Any]
     positions: tuple[int, ...]
     jobs: tuple[ClipJob, ...]
+    sums: Mapping[str, str]
     identity: Mapping[str, Any]
     options: Mapping[str, Any]
 
@@ -114,12 +118,13 @@ def plan_of(request: Request) -> Plan:
     identity = {
         "format": target.name,
         "dataset": description["name"],
-        "content_id": description["content_id"],
+        "recipe_id": description["recipe_id"],
         "options": options,
         "splits": [split for split in SPLITS if split in request.splits],
         "maps": sorted(set(request.maps)),
     }
-    return Plan(target, description, positions, jobs, identity, options)
+    sums = {job.name: clip_sha256(source, at) for at, job in zip(positions, jobs, strict=True)}
+    return Plan(target, description, positions, jobs, sums, identity, options)
 
 
 def _chosen(request: Request, source: Source) -> tuple[tuple[int, ...], tuple[ClipJob, ...]]:

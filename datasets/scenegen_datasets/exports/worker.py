@@ -34,7 +34,7 @@ def worker(setup: Mapping[str, Any]) -> Callable[[dict[str, Any], Any], dict[str
         clip = Clip(source, reader, payload["position"])
         with Stage(root, f"{FOLDER}/work/{clip.job.name}") as stage:
             written = target.write(clip, stage, options)
-            write_marker(root, clip.job.name, Marker(stage.commit(), written))
+            write_marker(root, clip.job.name, Marker(stage.commit(), written, clip.sha256))
         return {}
 
     return export_clip

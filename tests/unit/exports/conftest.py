@@ -22,7 +22,7 @@ from scenegen_datasets.exports.plan import Request
 from scenegen_datasets.finish import finish
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import DEFAULT_LAYERS
-from scenegen_datasets.store import create_or_open
+from scenegen_datasets.store import create_or_open, finished
 
 Exporter = Callable[..., Outcome]
 
@@ -53,13 +53,20 @@ def _seen_by(camera: int, K: np.ndarray) -> np.ndarray:
     return K * np.array([[1.0 + camera, 1.0, 1.0], [1.0, 1.0 + camera, 1.0], [1.0, 1.0, 1.0]])
 
 
-def make(root: Path, clips: int = 6, layers: tuple[str, ...] = DEFAULT_LAYERS, cameras: int = 1) -> Path:
-    """A finished dataset of clips with 3 pairs, two of each split; cameras take turns, as in a merged one."""
-    root.mkdir()
+def make(
+    root: Path,
+    clips: int = 6,
+    layers: tuple[str, ...] = DEFAULT_LAYERS,
+    cameras: int = 1,
+    netd_mk: float = 50.0,
+) -> Path:
+    """Make or grow a dataset of clips with 3 pairs, two of each split; cameras take turns, as in a merged one."""
+    root.mkdir(exist_ok=True)
     plan = fakes.jobs(clips)
     with DirectoryLock(root):
-        create_or_open(root, "map: city\n", fakes.lock(clips * fakes.PAIRS))
-        for job in plan:
+        create_or_open(root, "map: city\n", fakes.lock(clips * fakes.PAIRS, camera={"netd_mk": netd_mk}))
+        have = finished(root)
+        for job in (job for job in plan if job.name not in have):
             rng = np.random.default_rng(job.ordinal)
             K = _seen_by(job.ordinal % cameras, meta(job, 0).K)
             frames = (

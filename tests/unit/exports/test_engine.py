@@ -74,7 +74,7 @@ def test_killed_anywhere_and_continued(step: int, small: Path, run: Run, tree: T
         "for name in ('fsync', 'replace', 'mkdir'): setattr(os, name, armed(getattr(os, name)))\n"
         "export(Request(Path(sys.argv[1]), Path(sys.argv[2]), 'tum'))\n"
     )
-    done = subprocess.run([sys.executable, "-c", code, str(small), str(tmp_path / "out")], timeout=60)
+    done = subprocess.run([sys.executable, "-c", code, str(small), str(tmp_path / "out")], timeout=600)
     assert done.returncode == -signal.SIGKILL and not (tmp_path / "out" / SUMMARY).exists()
     for name, digest in tree(tmp_path / "out").items():
         assert name.startswith(".") or whole[name] == digest, name
@@ -88,7 +88,7 @@ def test_killed_anywhere_and_continued(step: int, small: Path, run: Run, tree: T
         ({"to": "tum"}, "format"),
         ({"gain": "ground"}, "options.gain"),
         ({"splits": ("val",)}, "splits"),
-        ({"dataset": "other"}, "content_id"),
+        ({"dataset": "other"}, "recipe_id"),
     ],
 )
 def test_another_export_in_the_directory_is_refused(
@@ -97,7 +97,7 @@ def test_another_export_in_the_directory_is_refused(
     run("kitti")
     before = tree(tmp_path / "out")
     if "dataset" in change:
-        change = {"dataset": make_dataset(tmp_path / "other", clips=4)}
+        change = {"dataset": make_dataset(tmp_path / "other", netd_mk=40.0)}
     with pytest.raises(InputError, match=named):
         run(**{"to": "kitti", **change})
     assert tree(tmp_path / "out") == before
