@@ -74,6 +74,10 @@ class Meter:
         """Clips were sensed again."""
         self._show("sensing", done, total, f"clip {done}/{total}")
 
+    def merged(self, done: int, total: int) -> None:
+        """Clips were linked or copied."""
+        self._show("merging", done, total, f"clip {done}/{total}")
+
     def exported(self, done: int, total: int) -> None:
         """Clips were exported."""
         self._show("exporting", done, total, f"clip {done}/{total}")
