@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
 from scenegen.foundation.words import counted
-from scenegen_cli.console import note, say, say_json, size
+from scenegen_cli.console import say, say_json, size
 from scenegen_cli.parse import parse
+
+if TYPE_CHECKING:
+    from scenegen_datasets.verify import VerifyReport
+    from scenegen_datasets.versions.merge import Merged
 
 
 @dataclass(frozen=True)
@@ -41,41 +45,32 @@ def run(arguments: Sequence[str]) -> int:
     command = parse(Merge, "merge", arguments)
     from scenegen_cli.making import processes
     from scenegen_cli.progress import Meter
-    from scenegen_datasets.verify import verify
+    from scenegen_cli.proving import exit_code, facts, proven
     from scenegen_datasets.versions.merge import merge
 
     workers = processes(command.jobs)
-    merged = merge(command.out, command.parts, copy=command.copy)
-    found = merged.info
     with Meter(quiet=command.json) as meter:
-        report = None if command.no_verify else verify(command.out, workers, progress=meter.verified)
+        merged = merge(command.out, command.parts, copy=command.copy, progress=meter.merged)
+        report = None if command.no_verify else proven(command.out, workers, meter, new=merged.new)
     if command.json:
-        findings = [] if report is None else [asdict(finding) for finding in report.findings]
-        facts = {
+        whole = {
             "linked": merged.linked,
             "copied": merged.copied,
             "world_offsets": dict(merged.offsets),
-            "findings": findings,
         }
-        say_json({**asdict(found), **facts, "verified": None if report is None else report.ok})
+        say_json({**asdict(merged.info), **whole, **facts(report)})
     else:
-        splits = ", ".join(f"{count:,} {name}" for name, count in found.splits.items() if count)
-        checked = (
-            ""
-            if report is None
-            else ", verified"
-            if report.ok
-            else f", {counted(len(report.findings), 'finding')}"
-        )
-        say(f"{command.out}: {counted(found.pairs, 'pair')} ({splits}), {size(found.bytes)}{checked}")
-        say(
-            f"{counted(merged.linked, 'shard')} linked, {merged.copied:,} copied; content {found.content_id[:16]}"
-        )
-        for seed, offset in sorted(merged.offsets.items()):
-            say(
-                f"worlds of seed {seed} are numbered from {offset} on, for other seeds have worlds of the same names"
-            )
-    if report is not None and not report.ok:
-        note(f"verify found: {report.findings[0]}")
-        return 1
-    return 0
+        say("\n".join(_words(command.out, merged, report)))
+    return exit_code(command.out, report, new=merged.new)
+
+
+def _words(out: Path, merged: Merged, report: VerifyReport | None) -> Iterator[str]:
+    from scenegen_cli.proving import in_words
+
+    found = merged.info
+    splits = ", ".join(f"{count:,} {name}" for name, count in found.splits.items() if count)
+    yield f"{out}: {counted(found.pairs, 'pair')} ({splits}), {size(found.bytes)}{in_words(report)}"
+    placed = f"{counted(merged.linked, 'shard')} linked, {merged.copied:,} copied"
+    yield f"{placed if merged.new else 'it was there already'}; content {found.content_id[:16]}"
+    for seed, offset in sorted(merged.offsets.items()):
+        yield f"worlds of seed {seed} are numbered from {offset} on, for other seeds have worlds of the same names"

@@ -32,6 +32,8 @@ class Sense:
     """Image size WIDTHxHEIGHT: blocks of stored pixels become one."""
     seed: int | None = None
     """Seed of the new noise; by default that of the dataset's recipe."""
+    no_verify: bool = False
+    """Do not verify the new dataset at the end."""
     jobs: int = 0
     """Worker processes; 0 is one per CPU."""
     json: bool = False
@@ -47,6 +49,7 @@ def run(arguments: Sequence[str]) -> int:
     command = parse(Sense, "sense", own)
     from scenegen_cli.making import processes
     from scenegen_cli.progress import Meter
+    from scenegen_cli.proving import exit_code, facts, in_words, proven
     from scenegen_datasets.sensing.run import sense_dataset
 
     if command.out is None:
@@ -56,21 +59,25 @@ def run(arguments: Sequence[str]) -> int:
     if command.size is not None:
         width, height = parse_size(command.size)
         flags["camera"] = {**flags.get("camera", {}), "width_px": width, "height_px": height}
+    workers = processes(command.jobs)
     with Meter(quiet=command.json) as meter:
         done = sense_dataset(
             command.dataset,
             command.out,
             flags,
             seed=command.seed,
-            processes=processes(command.jobs),
+            processes=workers,
             told=meter.sensed,
         )
+        new = done.made > 0
+        report = None if command.no_verify else proven(command.out, workers, meter, new=new)
     if command.json:
-        say_json({**asdict(done.info), "root": str(command.out), "side_px": done.side, "made": done.made})
-        return 0
-    blocks = f", {done.side}x{done.side} stored pixels each" if done.side > 1 else ""
-    say(
-        f"{command.out}: {counted(done.info.pairs, 'pair')} in {counted(done.info.clips, 'clip')}{blocks}, "
-        f"{size(done.info.bytes)}"
-    )
-    return 0
+        more = {"root": str(command.out), "side_px": done.side, "made": done.made}
+        say_json({**asdict(done.info), **more, **facts(report)})
+    else:
+        blocks = f", {done.side}x{done.side} stored pixels each" if done.side > 1 else ""
+        say(
+            f"{command.out}: {counted(done.info.pairs, 'pair')} in {counted(done.info.clips, 'clip')}{blocks}, "
+            f"{size(done.info.bytes)}{in_words(report)}"
+        )
+    return exit_code(command.out, report, new=new)

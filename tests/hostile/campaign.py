@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import select
@@ -122,8 +123,8 @@ class Campaign:
         assert self._child.stdout is not None
         asleep_since, cpu = time.monotonic(), -1
         while not select.select([self._child.stdout], [], [], 1.0)[0]:
-            state, now = _state(self._child.pid)
-            if state not in "SZ" or now != cpu:
+            runs, now = _work(self._child.pid)
+            if runs or now != cpu:
                 asleep_since, cpu = time.monotonic(), now
             if time.monotonic() - asleep_since > PATIENCE_S:
                 self._end()
@@ -180,6 +181,15 @@ class Campaign:
 
 def _remove(folder: Path) -> None:
     subprocess.run(["rm", "-rf", str(folder)], check=True)  # rmtree gives up in deep folders
+
+
+def _work(pid: int) -> tuple[bool, int]:
+    """Whether a process or one it started runs, and the clock ticks they have used."""
+    found = [_state(pid)]
+    for task in Path(f"/proc/{pid}/task").glob("*/children"):
+        with contextlib.suppress(OSError):  # a thread, or a process, that has just ended
+            found += [_state(int(child)) for child in task.read_text().split()]
+    return any(state not in "SZ" for state, _ in found), sum(ticks for _, ticks in found)
 
 
 def _state(pid: int) -> tuple[str, int]:

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from hostile import child
-from hostile.readers import READERS, Reader, check_said
+from hostile.readers import READERS, Reader
+from hostile.typed import check_said
 from scenegen.foundation.errors import DatasetError
 
 

@@ -109,12 +109,17 @@ def _hang(*_: object) -> None:
 
 
 def peak_MiB() -> int:
-    """Resident memory at its highest; `getrusage` would begin with that of the parent at the time of the fork."""
+    """Resident memory at its highest, of this process and of any it waited for.
+
+    Of a process, `getrusage` begins with what its parent had when it forked: right for our own children, not for us.
+    """
+    children = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss
     try:
         status = Path("/proc/self/status").read_text(encoding="ascii")
+        own = int(status.partition("VmHWM:")[2].split()[0])
     except OSError:
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss // 1024
-    return int(status.partition("VmHWM:")[2].split()[0]) // 1024
+        own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return max(own, children) // 1024
 
 
 def main() -> None:

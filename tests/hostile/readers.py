@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 import contextlib
-import importlib
-import io
 import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hostile.documents import MARK
+from hostile import makers
+from hostile.typed import check_pages, typed
 from scenegen.foundation.errors import ScenegenError
-from scenegen_cli.console import complain
-
-MOST_LETTERS = 2_000_000
-"""No reader has more to say about a few clips."""
-
-
-class SaidError(Exception):
-    """A command printed what no terminal or page should get."""
 
 
 @dataclass(frozen=True)
@@ -46,34 +37,10 @@ def _command(*words: str) -> Callable[[Path, Path], None]:
 
     def read(root: Path, scratch: Path) -> None:
         given = [word.replace("DIR", str(root)).replace("OUT", str(scratch / "out")) for word in words[1:]]
-        said = io.StringIO()
-        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            try:
-                importlib.import_module(f"scenegen_cli.{words[0]}").run(given)
-            except ScenegenError as error:
-                complain(" ".join(str(error).split()))  # as the command line does
-                raise
-            finally:
-                check_said(said.getvalue())
-        _check_pages(root, scratch)
+        typed(words[0], *given)
+        check_pages(scratch / "out.html", root / "preview" / "report.html")
 
     return read
-
-
-def check_said(text: str) -> None:
-    """Refuse text that controls a terminal, turns the direction of writing, or goes on for ever."""
-    odd = next((c for c in text if c != "\n" and not c.isprintable()), None)
-    if odd is not None:
-        line = next(line for line in text.split("\n") if odd in line)
-        raise SaidError(f"prints {odd!r}: {line[:120]!a}")
-    if len(text) > MOST_LETTERS:
-        raise SaidError(f"prints {len(text):,} letters")
-
-
-def _check_pages(root: Path, scratch: Path) -> None:
-    for page in (scratch / "out.html", root / "preview" / "report.html"):
-        if page.is_file() and not page.is_symlink() and MARK in page.read_text("utf-8", "replace"):
-            raise SaidError(f"{page.name} holds markup of the dataset")
 
 
 def _load(root: Path, scratch: Path) -> None:
@@ -131,6 +98,9 @@ READERS: dict[str, Reader] = {
     "export kitti": Reader(_command("export", "DIR", "--to", "kitti", "--out", "OUT", "--jobs", "1")),
     "export hdf5": Reader(_command("export", "DIR", "--to", "hdf5", "--out", "OUT", "--jobs", "1")),
     "push": Reader(_command("push", "DIR", "file://OUT")),
+    "merge": Reader(makers.merge_linked),
+    "sense": Reader(makers.sense),
+    "merge renumbered": Reader(makers.merge_renumbered, writes=True),
     "release": Reader(_command("release", "DIR", "1.0.0", "--jobs", "1"), writes=True),
     "report inside": Reader(_command("report", "DIR"), writes=True),
     "preview inside": Reader(_command("preview", "DIR"), writes=True),

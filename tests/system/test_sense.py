@@ -48,7 +48,7 @@ def test_another_camera_on_a_coarser_grid(
     assert main([*command, "--sensor.netd-mk", "200", "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     assert told["side_px"] == 2 and told["made"] == 4 and told["pairs"] == 16
-    assert verify(out).ok
+    assert told["verified"] is True and told["findings"] == []
     for fine, coarse in zip(samples(finished_dataset, *TRUTH), samples(out, "thermal", *TRUTH), strict=True):
         blocks = fine["radiance"].astype(np.float64).reshape(32, 2, 32, 2).mean(axis=(1, 3))
         np.testing.assert_allclose(coarse["radiance"], blocks, rtol=1e-6)

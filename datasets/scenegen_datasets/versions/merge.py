@@ -46,6 +46,11 @@ class Merged:
     copied: int
     offsets: Mapping[int, int]
 
+    @property
+    def new(self) -> bool:
+        """Whether this run made it."""
+        return self.linked + self.copied > 0
+
 
 def merge(out: Path, roots: Sequence[Path], *, copy: bool = False, progress: Told | None = None) -> Merged:
     """Make one dataset of several; it has the same content whatever their order, and keeps their splits.

@@ -15,6 +15,7 @@ from scenegen.foundation.canonical import canonical, digest, parse
 from scenegen.foundation.errors import DatasetError, InputError
 from scenegen_datasets import tar
 from scenegen_datasets.index import rows_of
+from scenegen_datasets.inside import folder_inside, open_inside, size_inside
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.reader import ShardReader
 from scenegen_datasets.receipt import FrameEntry, Receipt, Span
@@ -49,14 +50,14 @@ def place_clip(source: Path, receipt: Receipt, out: Path, job: ClipJob, *, copy:
     NoSpaceError
         If the device is full.
     """
-    shard = source / receipt.clip.job.shard
-    if shard.is_symlink() or not shard.is_file() or shard.stat().st_size != receipt.size:
+    if _size(source, receipt.clip.job.shard) != receipt.size:
         raise DatasetError(
-            f"{shard}: missing or not as long as its receipt says; run 'scenegen verify' on its dataset"
+            f"{source / receipt.clip.job.shard}: missing or not as long as its receipt says; "
+            "run 'scenegen verify' on its dataset"
         )
     linked = False
     if job.name == receipt.clip.job.name:
-        linked = _link_or_copy(shard, out, job.shard, receipt, copy)
+        linked = _link_or_copy(source, out, job.shard, receipt, copy)
         moved = replace(receipt, clip=replace(receipt.clip, job=job))
     else:
         moved = _rename(source, receipt, out, job)
@@ -65,32 +66,46 @@ def place_clip(source: Path, receipt: Receipt, out: Path, job: ClipJob, *, copy:
     return linked
 
 
+def _size(source: Path, shard: str) -> int:
+    """Bytes of a plain file, to which no step is a link; -1 if there is none."""
+    try:
+        return size_inside(source, shard)
+    except DatasetError:
+        return -1
+
+
 def _link_or_copy(source: Path, out: Path, shard: str, receipt: Receipt, copy: bool) -> bool:
     """Link or copy a shard; one that is there already and is the same file is left alone."""
     target = make_directories(out, str(Path(shard).parent)) / Path(shard).name
-    if target.exists() and not copy and target.samefile(source):
+    if target.exists() and not copy and target.samefile(source / shard):
         return True
     target.unlink(missing_ok=True)
     if not copy:
         try:
-            os.link(source, target, follow_symlinks=False)
-            sync_directory(target.parent)
+            _link(source, shard, target)
             return True
         except OSError as error:
             if error.errno not in _CANNOT_LINK:
                 raise InputError(f"cannot write {target}: {error.strerror or error}") from error
-    _copy(source, target, receipt)
+    _copy(source, shard, target, receipt)
     return False
 
 
-def _copy(source: Path, target: Path, receipt: Receipt) -> None:
+def _link(source: Path, shard: str, target: Path) -> None:
+    folder, _, name = shard.rpartition("/")
+    with folder_inside(source, folder) as place:
+        os.link(name, target, src_dir_fd=place, follow_symlinks=False)
+    sync_directory(target.parent)
+
+
+def _copy(source: Path, shard: str, target: Path, receipt: Receipt) -> None:
     found = hashlib.sha256()
-    with source.open("rb") as stream, AtomicFile(target) as file:
+    with os.fdopen(open_inside(source, shard), "rb") as stream, AtomicFile(target) as file:
         while block := stream.read(_CHUNK):
             found.update(block)
             file.write(block)
         if found.hexdigest() != receipt.sha256:
-            raise DatasetError(f"{source}: damaged; run 'scenegen verify' on its dataset")
+            raise DatasetError(f"{source / shard}: damaged; run 'scenegen verify' on its dataset")
         file.commit()
 
 

@@ -9,7 +9,8 @@ import pytest
 from hostile import campaign as module
 from hostile.campaign import Campaign
 from hostile.careless import MISTAKES
-from hostile.readers import READERS, check_said, readers_of
+from hostile.readers import READERS, readers_of
+from hostile.typed import check_said
 
 
 def test_each_mistake_is_told(pristine: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -156,8 +156,51 @@ def test_a_damaged_part_is_found_while_it_is_copied(
     with pytest.raises(DatasetError, match=f"{shard.name}: damaged"):
         merge(tmp_path / "copied", [parts["city"], field], copy=True)
     assert not (tmp_path / "copied" / "dataset.json").exists()
-    assert main(["merge", str(tmp_path / "linked"), str(parts["city"]), str(field), "--jobs", "1"]) == 1
-    assert "verify found" in capsys.readouterr().err
+
+
+def test_a_damaged_part_that_is_linked_leaves_nothing_that_looks_whole(
+    parts: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Once the part is put right, which makes a new file of the shard, the same command finishes the whole."""
+    field, out = Path(shutil.copytree(parts["field"], tmp_path / "field")), tmp_path / "all"
+    shard = next(field.rglob("*.tar"))
+    sound = shard.read_bytes()
+    shard.write_bytes(sound[:700] + bytes([sound[700] ^ 1]) + sound[701:])
+    command = ["merge", str(out), str(parts["city"]), str(field), "--jobs", "1"]
+    assert main([*command, "--json"]) == 1
+    told = capsys.readouterr()
+    assert json.loads(told.out)["verified"] is False and json.loads(told.out)["findings"]
+    assert f"{out} counts as unfinished: `scenegen repair` what it was made of" in told.err
+    assert not (out / "dataset.json").exists() and not (out / "MANIFEST.sha256").exists()
+    shard.unlink()
+    shard.write_bytes(sound)
+    assert main(command) == 0
+    assert "verified" in capsys.readouterr().out and verify(out).ok
+    assert main(command) == 0
+    assert "it was there already" in capsys.readouterr().out
+
+
+def test_a_whole_that_is_damaged_later_keeps_what_repair_needs(
+    parts: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "all"
+    command = ["merge", str(out), str(parts["city"]), str(parts["field"]), "--copy", "--jobs", "1"]
+    assert main(command) == 0
+    next(out.rglob("*.tar")).unlink()
+    assert main(command) == 1
+    assert f"`scenegen repair {out}` puts it right" in capsys.readouterr().err
+    assert (out / "dataset.json").is_file() and (out / "MANIFEST.sha256").is_file()
+
+
+@pytest.mark.parametrize("copy", [False, True])
+def test_no_shard_is_fetched_through_a_link(parts: dict[str, Path], tmp_path: Path, copy: bool) -> None:
+    """A part may say that its folder is one of somebody else's."""
+    field = Path(shutil.copytree(parts["field"], tmp_path / "field"))
+    (field / "shards" / "train").rename(tmp_path / "elsewhere")
+    (field / "shards" / "train").symlink_to(tmp_path / "elsewhere")
+    with pytest.raises(DatasetError, match="missing or not as long as its receipt says"):
+        merge(tmp_path / "all", [parts["city"], field], copy=copy)
+    assert {path.stat().st_nlink for path in (tmp_path / "elsewhere").rglob("*.tar")} == {1}
 
 
 def test_copies_that_do_not_fit_are_refused_before_anything_is_copied(
