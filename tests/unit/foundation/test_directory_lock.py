@@ -24,7 +24,7 @@ from pathlib import Path
 from scenegen.foundation.lock import DirectoryLock
 with DirectoryLock(Path(sys.argv[1])):
     print("held", flush=True)
-    time.sleep(60)
+    time.sleep(600)
 """
 
 CONTEND = """
@@ -87,7 +87,7 @@ def test_many_processes_are_never_inside_together(tmp_path: Path) -> None:
     racing = [
         subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) for _ in range(3)
     ]
-    results = [p.communicate(timeout=60) for p in racing]
+    results = [p.communicate(timeout=600) for p in racing]
     assert [p.returncode for p in racing] == [0, 0, 0], results
     assert sum(int(out) for out, _ in results) > 100
 

@@ -31,7 +31,7 @@ WRITERS: dict[str, Callable[[Path], None]] = {"run.log.jsonl": _log, ".lock": _l
 @pytest.fixture(autouse=True)
 def patience() -> Iterator[None]:
     """A pipe would keep the test waiting for ever."""
-    signal.alarm(20)
+    signal.alarm(600)
     yield
     signal.alarm(0)
 

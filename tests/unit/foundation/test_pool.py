@@ -34,9 +34,9 @@ def of_kind(events: Iterable[Event], kind: type) -> list[Any]:
 def alive(pid: int) -> bool:
     try:
         os.kill(pid, 0)
-    except ProcessLookupError:
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except (ProcessLookupError, FileNotFoundError):
         return False
-    return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
 
 
 def test_every_task_is_done_once_and_says_so() -> None:
@@ -92,11 +92,11 @@ def test_a_users_error_is_not_tried_again(tmp_path: Path) -> None:
 
 def test_a_hanging_worker_is_killed_and_its_task_retried(tmp_path: Path) -> None:
     start = time.monotonic()
-    pool = make_pool(jobs=1, silence_s=3.0, scratch=str(tmp_path))
+    pool = make_pool(jobs=1, silence_s=8.0, scratch=str(tmp_path))
     events = list(pool.run([task("slow", bad_attempts=1, how="hang")]))
-    assert [e.failure.message for e in of_kind(events, Strike)] == ["its worker reported nothing for 3 s"]
+    assert [e.failure.message for e in of_kind(events, Strike)] == ["its worker reported nothing for 8 s"]
     assert len(of_kind(events, Done)) == 1
-    assert time.monotonic() - start < 30
+    assert time.monotonic() - start < 300  # it would sleep for 1000
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_a_killed_parent_leaves_no_orphans() -> None:
         assert all(alive(pid) for pid in pids)
         parent.send_signal(signal.SIGKILL)
         parent.wait()
-    deadline = time.monotonic() + 5
+    deadline = time.monotonic() + 60
     while any(alive(pid) for pid in pids) and time.monotonic() < deadline:
         time.sleep(0.02)
     assert not any(alive(pid) for pid in pids)

@@ -26,7 +26,7 @@ SECRET = b"secret"
 @pytest.fixture(autouse=True)
 def patience() -> Iterator[None]:
     """A pipe would keep the test waiting for ever."""
-    signal.alarm(60)
+    signal.alarm(600)
     yield
     signal.alarm(0)
 

@@ -21,7 +21,7 @@ HOST = socket.gethostname()
 @pytest.fixture(autouse=True)
 def patience() -> Iterator[None]:
     """A pipe would keep the test waiting for ever."""
-    signal.alarm(60)
+    signal.alarm(600)
     yield
     signal.alarm(0)
 

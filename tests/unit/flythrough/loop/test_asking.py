@@ -55,7 +55,7 @@ def good(seen: Observation) -> Decision:
 
 
 def test_a_good_answer_comes_through():
-    answer = ask(Scripted(good), question(), 5.0)
+    answer = ask(Scripted(good), question(), 60.0)
     assert answer.failed == {}
     np.testing.assert_array_equal(answer.command.velocity_mps, 1.0)
     assert answer.depth_m is not None
@@ -69,7 +69,7 @@ def test_numbers_that_are_none_fail_their_flights_only():
         decision.command.yaw_rad[3] = np.inf
         return decision
 
-    answer = ask(Scripted(act), question(), 5.0)
+    answer = ask(Scripted(act), question(), 60.0)
     assert answer.failed == {11: "velocity_mps is not finite", 13: "yaw_rad is not finite"}
     assert np.isfinite(answer.command.velocity_mps).all()
     np.testing.assert_array_equal(answer.command.velocity_mps[1], 0.0)
@@ -82,7 +82,7 @@ def test_who_raises_for_one_flight_fails_that_flight():
             raise RuntimeError("no idea\nwhat this is")
         return good(seen)
 
-    answer = ask(Scripted(act), question(), 5.0)
+    answer = ask(Scripted(act), question(), 60.0)
     assert answer.failed == {12: "raised RuntimeError: no idea what this is"}
     np.testing.assert_array_equal(answer.command.velocity_mps[:, 0], [1.0, 1.0, 0.0, 1.0])
     assert answer.depth_m is None  # one of the four said nothing
@@ -100,7 +100,7 @@ def test_who_raises_for_one_flight_fails_that_flight():
     ],
 )
 def test_an_answer_of_the_wrong_form_fails_with_its_form(answer, reason):
-    told = ask(Scripted(lambda seen: answer), question(), 5.0)
+    told = ask(Scripted(lambda seen: answer), question(), 60.0)
     assert told.failed == dict.fromkeys(range(10, 14), reason)
     np.testing.assert_array_equal(told.command.velocity_mps, 0.0)
 
@@ -109,7 +109,7 @@ def test_exit_in_a_pilot_does_not_end_the_campaign():
     def act(seen):
         raise SystemExit(3)
 
-    assert ask(Scripted(act), question(2), 5.0).failed == dict.fromkeys((10, 11), "raised SystemExit: 3")
+    assert ask(Scripted(act), question(2), 60.0).failed == dict.fromkeys((10, 11), "raised SystemExit: 3")
 
 
 def test_who_stalls_fails():
@@ -129,9 +129,9 @@ def test_a_latency_beyond_patience_is_a_stall_too():
         decision = good(seen)
         return Decision(decision.command, None, np.array([0.1, 900.0, -1.0, np.nan]))
 
-    failed = ask(Scripted(act), question(), 5.0).failed
+    failed = ask(Scripted(act), question(), 60.0).failed
     assert failed == {
-        11: "stalled: a latency beyond 5 s",
+        11: "stalled: a latency beyond 60 s",
         12: "latency_s is not a time",
         13: "latency_s is not a time",
     }
@@ -141,6 +141,6 @@ def test_depth_of_another_shape_is_not_kept():
     def act(seen):
         return Decision(good(seen).command, np.ones((4, 2, 2), np.float32))
 
-    answer = ask(Scripted(act), question(), 5.0)
+    answer = ask(Scripted(act), question(), 60.0)
     assert answer.failed == {}
     assert answer.depth_m is None
