@@ -65,12 +65,12 @@ def test_the_camera_of_all_frames(pristine: Path, fakes: ModuleType) -> None:
 
 def test_cameras_that_differ_and_damaged_rows_are_told(dataset: Path) -> None:
     pairs = PairDataset(dataset)
+    clips = pairs.clips  # while all is whole: the check of its type reads any one of them
     heads = pairs._source.heads.copy()
     object.__setattr__(pairs._source, "heads", heads)
     heads["K"][3, 0, 0] += 1.0
     with pytest.raises(InputError, match="take 'K' of each sample"):
         _ = pairs.intrinsics
-    clips = pairs.clips  # whole: the check of its type reads any one of them
     heads["map"][0] = b"citx"
     with pytest.raises(CorruptFrameError, match="a row is damaged"):
         clips[0]
