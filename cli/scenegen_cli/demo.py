@@ -7,10 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from scenegen_cli.console import say
-from scenegen_cli.making import make, pictures, processes
 from scenegen_cli.parse import parse
-from scenegen_cli.render import ask
-from scenegen_datasets.render_job import Job
 
 CLIPS, PAIRS_PER_CLIP = 4, 16
 
@@ -28,6 +25,10 @@ class Demo:
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
     command = parse(Demo, "demo", arguments)
+    from scenegen_cli.making import make, pictures, processes
+    from scenegen_cli.render import ask
+    from scenegen_datasets.render_job import Job
+
     asked, recipe = ask(None, None, {"clips_per_world": CLIPS, "pairs_per_clip": PAIRS_PER_CLIP})
     job = Job(
         recipe=recipe,

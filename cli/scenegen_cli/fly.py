@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 from scenegen.foundation.errors import InputError
 from scenegen.foundation.words import counted
-from scenegen.maps.own_scene.own_scene import describe
 from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
 from scenegen_cli.helping import keys_help
 from scenegen_cli.leaving import TerminatedError
-from scenegen_cli.making import processes
 from scenegen_cli.parse import parse, split_recipe_flags
 from scenegen_datasets.recipe import Recipe
 from scenegen_datasets.resolve import Source, leaves
@@ -102,6 +100,8 @@ def ask(command: Fly, flags: Mapping[str, Any]) -> Campaign:
     InputError
         For whatever is wrong with it, before anything is built.
     """
+    from scenegen.maps.own_scene.own_scene import describe
+    from scenegen_cli.making import processes
     from scenegen_flythrough.planners.registry import planner
     from scenegen_trainers.campaign.recipe import resolve_flights
     from scenegen_trainers.campaign.run import Campaign

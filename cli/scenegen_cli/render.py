@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from scenegen.foundation.errors import InputError
-from scenegen.maps.own_scene.own_scene import describe
 from scenegen_cli.asking import sources
 from scenegen_cli.console import say, say_json
 from scenegen_cli.helping import keys_help
-from scenegen_cli.making import make, plan_in_words, processes
 from scenegen_cli.parse import parse, split_recipe_flags
 from scenegen_datasets.licence import checked_licence
 from scenegen_datasets.recipe import Recipe, resolve_recipe, settle_pairs
-from scenegen_datasets.render_job import Job
 from scenegen_datasets.resolve import leaves, merge
+
+if TYPE_CHECKING:
+    from scenegen_datasets.render_job import Job
 
 
 @dataclass(frozen=True)
@@ -50,6 +50,10 @@ def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
     own, flags = split_recipe_flags(arguments, [key for key, _, _ in leaves(Recipe)])
     command = parse(Render, "render", own, _recipe_help())
+    from scenegen.maps.own_scene.own_scene import describe
+    from scenegen_cli.making import make, processes
+    from scenegen_datasets.render_job import Job
+
     asked, recipe = ask(command.recipe, command.size, flags)
     if not command.pairs:
         raise InputError("--pairs is missing or 0: say how many pairs to make, such as --pairs 512")
@@ -92,6 +96,8 @@ def ask(file: Path | None, size: str | None, flags: Mapping[str, Any]) -> tuple[
 
 
 def _say_plan(job: Job, command: Render) -> None:
+    from scenegen_cli.making import plan_in_words
+
     splits = {name: sum(c.pairs for c in job.clips if c.split == name) for name in ("train", "val", "test")}
     if command.json:
         say_json(
