@@ -77,7 +77,7 @@ HEAD = (
     "δ1",
     "δ1, median-aligned",
     "RMSE with sky as cap [m]",
-    "against it: δ1",
+    "δ1 against the proposed",
 )
 COLUMNS = (
     ("pooled", "rmse_m", 2),
@@ -152,8 +152,16 @@ def collected(options: argparse.Namespace) -> dict[str, dict[str, Any]]:
 
 
 def rows(scores: Mapping[str, Mapping[str, Any]]) -> list[list[str]]:
-    """Variants, then the answers that look at no image."""
-    lines = [[name, *values(list(runs.values())), against(name, scores)] for name, runs in scores.items()]
+    """Variants, with how many seeds they have where others have more, then the answers that look at no image."""
+    most = max(map(len, scores.values()), default=0)
+    lines = [
+        [
+            name if len(runs) == most else f"{name} ({len(runs)})",
+            *values(list(runs.values())),
+            against(name, scores),
+        ]
+        for name, runs in scores.items()
+    ]
     first = next((run for runs in scores.values() for run in runs.values()), None)
     trivial = {} if first is None else first["baselines"]
     return lines + [[f"{name}, no image", *values([own]), ""] for name, own in trivial.items()]

@@ -44,3 +44,43 @@ def test_verdicts_are_those_of_the_runs(page: str, table: dict[str, Any]) -> Non
             found = judge(relation, score, {k: [r["pooled"][score] for r in v] for k, v in runs.items()})
             cells.append(f"{found.verdict} ({found.margin:+.3f})")
         assert f"| {relation.claim} | {' | '.join(cells)} |" in page
+
+
+def test_every_variant_of_the_ablation_says_its_means_spreads_and_seeds() -> None:
+    page = (RESULTS / "ablation.md").read_text(encoding="utf-8")
+    variants = json.loads((RESULTS / "ablation.json").read_text(encoding="utf-8"))
+    most = max(map(len, variants.values()))
+    lines = [line.split(" | ") for line in page.splitlines() if line.startswith("| ")]
+    said = {line[0].removeprefix("| "): line[1:6] for line in lines}
+    for name, runs in variants.items():
+        cells = []
+        for kind, score, digits in (
+            ("pooled", "rmse_m", 2),
+            ("pooled", "rel", 3),
+            ("pooled", "delta1", 3),
+            ("pooled_aligned", "delta1", 3),
+            ("painted", "rmse_m", 2),
+        ):
+            values = [run[kind][score] for run in runs.values()]
+            spread = f" ± {stdev(values):.{digits}f}" if len(values) > 1 else ""
+            cells.append(f"{fmean(values):.{digits}f}{spread}")
+        assert said[name if len(runs) == most else f"{name} ({len(runs)})"] == cells
+
+
+def test_flights_of_table_2_are_those_that_were_counted() -> None:
+    page = (RESULTS / "table2.md").read_text(encoding="utf-8")
+    table = json.loads((RESULTS / "table2.json").read_text(encoding="utf-8"))
+    rows = dict(table["maps"])
+    rows |= {"mean of all 4": table["all_maps"], "without city": table["without_city"]}
+    for name, row in rows.items():
+        (line,) = (line for line in page.splitlines() if line.startswith(f"| {name} | ") and "open" in line)
+        for rate in row["collisions"].values():
+            counts = f"({rate['count']}/{rate['of']}; {100 * rate['low']:.1f}-{100 * rate['high']:.1f})"
+            assert counts in line
+        paired = row["mcnemar"]
+        assert f"{paired['p']:.2g} ({paired['first_only']} : {paired['second_only']})" in line
+    for line in table["lines"]:
+        ends = " | ".join(
+            str(line["ends"][kind]["count"]) for kind in ("goal", "collision", "timeout", "pilot")
+        )
+        assert f"| {line['map']} | {line['pilot']} | {line['flights']} | {ends} | " in page
