@@ -41,12 +41,18 @@ def _as_stored(path: Path) -> np.ndarray:
 
 
 def tartanair(root: Path) -> Iterator[Seen]:
-    """`read_decode_depth` and `read_decode_flow` of tartanairpy's page on modalities; NED poses."""
+    """Data files as the data cacher parses them; decoders of tartanairpy's page on modalities; NED poses."""
     environments = [
         name for names in json.loads((root / "splits.json").read_text()).values() for name in names
     ]
-    for home in (p for name in environments for p in sorted((root / name / "Data_easy").glob("P*"))):
+    files = [path for name in environments for path in sorted((root / name / "analyze").glob("data_*.txt"))]
+    trajectories = dict(entry for path in files for entry in _data_file(path))
+    assert trajectories == dict(e for split in SPLITS for e in _data_file(root / f"data_{split}.txt"))
+    for home, frames in ((root / name, frames) for name, frames in trajectories.items()):
+        assert (root / home.parts[-3] / f"analyze/data_{'_'.join(home.parts[-3:])}.txt") in files
+        assert frames == [f"{k:06d}" for k in range(len(frames))]
         poses = np.loadtxt(home / "pose_lcam_front.txt")
+        assert len(poses) == len(frames)
         K = np.array(json.loads((home / "intrinsics.json").read_text())["K"])
         for k, pose in enumerate(poses):
             name = f"{k:06d}_lcam_front"
@@ -68,6 +74,14 @@ def tartanair(root: Path) -> Iterator[Seen]:
                 pose=_from_ned(pose),
                 K=K,
             )
+
+
+def _data_file(path: Path) -> Iterator[tuple[str, list[str]]]:
+    """Trajectories and their frames: a line with both name and number, then as many lines."""
+    lines = iter(path.read_text().splitlines())
+    for line in lines:
+        name, number = line.split(" ")
+        yield name, [next(lines) for _ in range(int(number))]
 
 
 def _tartan_flow(path: Path) -> tuple[np.ndarray, np.ndarray] | None:

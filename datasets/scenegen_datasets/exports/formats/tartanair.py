@@ -3,7 +3,8 @@
 An environment is a world, a trajectory a clip; the one difficulty is called ``easy``. Depth is the float32 itself, its
 four bytes as the channels of a PNG. Flow is the older 16-bit kind with a mask (0 seen in the next frame, 1 hidden
 there, 100 outside of it). Poses are NED. TartanAir's camera is always 640x640 with 90 degrees; ours stands in
-``intrinsics.json`` of each trajectory.
+``intrinsics.json`` of each trajectory. tartanairpy's data cacher finds frames by data files, which list them: one
+below ``analyze`` for each trajectory, and for use without tartanairpy one for each split.
 """
 
 from __future__ import annotations
@@ -59,12 +60,19 @@ def write(clip: Clip, stage: Stage, options: Options) -> Written:
     rows, columns = clip.shape
     camera = {"K": picture.K.tolist(), "height_px": rows, "width_px": columns}
     stage.put(f"{home}/intrinsics.json", pretty(camera))
+    world, *rest = home.split("/")
+    stage.put(f"{world}/analyze/data_{world}_{'_'.join(rest)}.txt", data_file(home, clip.job.frames))
     return Written(counts)
 
 
 def home_of(map_name: str, world: int, clip: int) -> str:
     """Directory of a trajectory."""
     return f"{map_name}-{world:05d}/Data_easy/P{clip:03d}"
+
+
+def data_file(home: str, frames: int) -> str:
+    """What the data cacher reads of a trajectory: where it is, how many frames it has, and their names."""
+    return f"{home} {frames}\n" + "".join(f"{frame:06d}\n" for frame in range(frames))
 
 
 def depth_png(depth: np.ndarray) -> bytes:
@@ -85,11 +93,14 @@ def _flow(picture: Picture) -> tuple[bytes, int]:
 
 
 def finish(stage: Stage, clips: Sequence[Exported], description: Mapping[str, Any], options: Options) -> None:
-    """Write which environment belongs to which split, and what the segments mean."""
+    """Write which environments and trajectories belong to which split, and what the segments mean."""
     environments = {
         split: sorted({f"{c.map}-{c.world:05d}" for c in clips if c.split == split}) for split in SPLITS
     }
     stage.put("splits.json", pretty(environments))
+    for split in SPLITS:
+        files = (data_file(home_of(c.map, c.world, c.clip), c.frames) for c in clips if c.split == split)
+        stage.put(f"data_{split}.txt", "".join(files))
     stage.put(
         "seg_label_map.json", pretty({"name_map": {c["name"]: c["id"] for c in description["classes"]}})
     )
@@ -100,8 +111,8 @@ FORMAT = Format(
     readers="TartanAir V2 (tartanairpy) and what trains on it",
     layout=(
         "`MAP-WORLD/Data_easy/PCLIP/image_lcam_front/N_lcam_front.png`, `depth_lcam_front/`, `flow_lcam_front/`, "
-        "`seg_lcam_front/`, `pose_lcam_front.txt` (NED), `intrinsics.json`, `gain.json`; `splits.json`, "
-        "`seg_label_map.json`"
+        "`seg_lcam_front/`, `pose_lcam_front.txt` (NED), `intrinsics.json`, `gain.json`; "
+        "`MAP-WORLD/analyze/data_MAP-WORLD_Data_easy_PCLIP.txt`; `splits.json`, `data_SPLIT.txt`, `seg_label_map.json`"
     ),
     range="depth any; flow -512 to 511.98 px",
     step="depth none; flow 1/64 px; thermal 8 bits",
