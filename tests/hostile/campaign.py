@@ -17,6 +17,7 @@ import numpy as np
 
 from hostile.mutants import MUTANTS, nothing
 from hostile.readers import READERS, readers_of
+from scenegen_datasets.workers import ENVIRONMENT
 
 PATIENCE_S = 60.0
 """A reader that sleeps so long waits for something that never comes; one that works has a limit of its own."""
@@ -149,6 +150,7 @@ class Campaign:
             cwd=Path(__file__).parents[1],
             env={
                 **os.environ,
+                **ENVIRONMENT,  # a machine of many cores would reserve most of the address space for its threads
                 "HOME": str(self._base),
                 "TMPDIR": str(self._scratch / "tmp"),
                 "PYTHONDONTWRITEBYTECODE": "1",
