@@ -135,7 +135,7 @@ def test_nothing_non_finite_leaves_the_tracer(plate, layer, value, stage):
 
 @pytest.mark.slow
 def test_releasing_worlds_gives_their_memory_back():
-    """A world that is kept costs 14 MiB, so six of them 84; whatever else the process holds may come and go a little."""
+    """Six worlds that are kept cost 84 MiB; whatever else the process holds may come and go a little."""
     glass = Surface(material("window_glass"), 0.86, 0.15)
     world = reference_scenes.box_city((ASPHALT, ASPHALT, ASPHALT, glass), np.random.default_rng(2), 8, 2.4)
     state = reference_scenes.uniform_state(world, 300.0, Atmosphere(290.0, 10.0))
