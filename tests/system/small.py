@@ -5,6 +5,8 @@ import os
 import shutil
 import subprocess
 import sys
+import time
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 FLAGS = [
@@ -54,6 +56,27 @@ def alive(pid: int) -> bool:
         return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
     except (ProcessLookupError, FileNotFoundError):
         return False
+
+
+def until(condition: Callable[[], object], patience_s: float = 300.0) -> bool:
+    """Wait until something holds, as long as a busy machine may take; whether it does."""
+    deadline = time.monotonic() + patience_s
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.02)
+    return True
+
+
+def gone(pids: Iterable[int]) -> bool:
+    """Whether processes end by themselves."""
+    return until(lambda: not any(map(alive, pids)), 60.0)
+
+
+def starts(root: Path) -> int:
+    """How often making clips was begun, as the log of a dataset tells."""
+    log = root / "run.log.jsonl"
+    return log.read_text().count('"event": "start"') if log.exists() else 0
 
 
 def remove(root: Path) -> None:

@@ -6,7 +6,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -81,9 +80,7 @@ def test_two_pilots_fly_the_same_missions(flown: Path) -> None:
 def test_one_process_growth_and_a_kill_give_the_same_outcomes(flown: Path, tmp_path: Path) -> None:
     root = tmp_path / "c"
     job = small.start(fly(root, "--versus", "blind", flights=6, jobs=1))
-    deadline = time.monotonic() + 60.0
-    while len(list(root.glob("flights/**/*.json"))) < 3 and time.monotonic() < deadline:
-        time.sleep(0.02)
+    assert small.until(lambda: len(list(root.glob("flights/**/*.json"))) >= 3)
     os.killpg(job.pid, signal.SIGKILL)
     job.communicate()
     begun = {path: path.stat().st_mtime_ns for path in root.glob("flights/**/00000.json")}

@@ -57,7 +57,7 @@ def test_same_bytes_in_another_process_and_other_bytes_for_another_seed() -> Non
         + "')['digest_of_all'](5))"  # no pytest, own process
     )
     other = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=120
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=600
     )
     own = digest_of_all(5)
     assert other.stdout.strip().splitlines()[-1] == own

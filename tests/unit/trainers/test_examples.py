@@ -35,7 +35,7 @@ def test_any_trainer_can_be_fed(toy: Path, tmp_path: Path) -> None:
         env=environment,
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=1200,
     )
     assert done.returncode == 0, done.stderr[-3000:]
     losses = json.loads((tmp_path / "losses.json").read_text())

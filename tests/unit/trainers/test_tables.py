@@ -135,7 +135,7 @@ def test_two_processes_share_a_training(toy: Path, tmp_path: Path) -> None:
     start.write_text("from scenegen_cli.main import main\nraise SystemExit(main())\n")
     out = tmp_path / "run"
     command = [sys.executable, start, "train", "--data", toy, "--out", out, "--devices", "2", *TINY]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=1200)
     assert done.returncode == 0, done.stderr
     assert done.stdout.strip() == str(out / "model.pt")
     assert "2 processes" in done.stderr and "deprecated" not in done.stderr
@@ -176,5 +176,5 @@ def test_help_loads_no_torch(command: str) -> None:
         "heavy = {'torch', 'lightning', 'mitsuba', 'cv2', 'scipy'} & {n.partition('.')[0] for n in sys.modules}\n"
         "assert not heavy, heavy\n"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=600)
     assert done.returncode == 0, done.stderr
