@@ -15,7 +15,7 @@ from scenegen.foundation.lock import DirectoryLock
 from scenegen_datasets.resolve import Source
 from scenegen_render.camera import Camera
 from scenegen_trainers.models.checkpoint import read_checkpoint
-from scenegen_trainers.models.torch_file import unpacked
+from scenegen_trainers.models.torch_file import unpacked, write_packed
 from scenegen_trainers.pilots.checkpoint import TorchDepth
 from scenegen_trainers.training.loop import MODEL, Taught, train
 from scenegen_trainers.training.machine import Machine
@@ -191,6 +191,17 @@ def test_a_checkpoint_flies_and_answers_as_it_is_judged(toy: Path, tmp_path: Pat
     assert np.abs(judged - direct).max() < 1e-3
     with pytest.raises(InputError, match="32x32"):
         TorchDepth(path, Camera(64, 32, 14.0, (32.0, 16.0)))
+
+
+def test_equal_content_is_equal_bytes_wherever_its_words_came_from(tmp_path: Path) -> None:
+    def content(word: str, again: str) -> dict[str, Any]:
+        return {word: [again, {"deep": (again, 1)}], "weights": torch.ones(2)}
+
+    apart = "".join(["pix", "2pix"])
+    write_packed(tmp_path / "a.pt", content("pix2pix", "pix2pix"))
+    write_packed(tmp_path / "b.pt", content("pix2pix", apart))
+    assert (tmp_path / "a.pt").read_bytes() == (tmp_path / "b.pt").read_bytes()
+    assert unpacked(tmp_path / "a.pt")["pix2pix"] == ["pix2pix", {"deep": ("pix2pix", 1)}]
 
 
 def test_what_is_no_checkpoint_is_refused_in_one_line(toy: Path, tmp_path: Path) -> None:

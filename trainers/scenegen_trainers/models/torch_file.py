@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import importlib
 import io
+import sys
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -47,10 +48,22 @@ def torch_for(path: Path) -> Any:
 
 
 def write_packed(path: Path, content: Mapping[str, Any]) -> None:
-    """Write plain data and tensors, whole or not at all."""
+    """Write plain data and tensors, whole or not at all; equal content becomes equal bytes."""
     buffer = io.BytesIO()
-    torch_for(path).save(dict(content), buffer)
+    torch_for(path).save(_told_once(dict(content)), buffer)
     write_atomic(path, buffer.getvalue())
+
+
+def _told_once(value: Any) -> Any:
+    """The same plain data with one object for equal words: the format writes an object once and points to it after
+    that, so that where a word came from would show in the bytes."""
+    if type(value) is str:
+        return sys.intern(value)
+    if type(value) is dict:
+        return {_told_once(key): _told_once(item) for key, item in value.items()}
+    if type(value) in (list, tuple):
+        return type(value)(map(_told_once, value))
+    return value
 
 
 def unpacked(path: Path) -> dict[str, Any]:
