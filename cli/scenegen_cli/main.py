@@ -110,8 +110,13 @@ def _run(words: list[str]) -> int:
 
 def _explain(error: Exception) -> int:
     """One line for a user; a bug's traceback goes to a file, which the line names."""
+    from pathlib import Path
+
+    from scenegen.foundation.atomic import explained, is_full
     from scenegen.foundation.errors import ScenegenError
 
+    if isinstance(error, OSError) and is_full(error):
+        error = explained(error, Path(error.filename or "what is written"))
     if isinstance(error, ScenegenError):
         complain(" ".join(str(error).split()))
         return error.exit_code

@@ -6,11 +6,12 @@ import datetime
 import json
 import os
 import platform
+from io import FileIO
 from pathlib import Path
 from types import TracebackType
-from typing import Any, TextIO
+from typing import Any
 
-from scenegen.foundation.errors import InputError
+from scenegen.foundation.atomic import explained
 from scenegen.foundation.plain_file import open_plain
 from scenegen_datasets.store import RUN_LOG
 
@@ -33,18 +34,20 @@ class RunLog:
     ------
     InputError
         On entering, if the log cannot be written, or a link or a pipe lies in its place.
+    NoSpaceError
+        On entering, if the device is too full for an empty file.
     """
 
     def __init__(self, root: Path) -> None:
         self.path = root / RUN_LOG
-        self._file: TextIO | None = None
+        self._file: FileIO | None = None
 
     def __enter__(self) -> RunLog:
         try:
             descriptor = open_plain(self.path, os.O_WRONLY | os.O_APPEND)
         except OSError as error:
-            raise InputError(f"cannot write {self.path}: {error.strerror}") from None
-        self._file = os.fdopen(descriptor, "a", encoding="utf-8")
+            raise explained(error, self.path) from None
+        self._file = FileIO(descriptor, "a")  # unbuffered: what a full disk refuses is not tried again
         return self
 
     def __exit__(
@@ -60,8 +63,7 @@ class RunLog:
         line = json.dumps({"time": now, "event": event, **facts}, ensure_ascii=False)
         try:
             assert self._file is not None
-            self._file.write(line + "\n")
-            self._file.flush()
+            self._file.write(f"{line}\n".encode(errors="backslashreplace"))
         except OSError:
             return
 

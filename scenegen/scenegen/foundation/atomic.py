@@ -164,8 +164,13 @@ def _create(path: Path) -> tuple[Path, int]:
             raise explained(error, path) from error
 
 
+def is_full(error: OSError) -> bool:
+    """Whether a write failed because the device, a quota or a limit is full."""
+    return error.errno in _FULL
+
+
 def explained(error: OSError, path: Path) -> ScenegenError:
     """What a failed write means to a user: a full device, or a place that cannot be written."""
-    if error.errno in _FULL:
+    if is_full(error):
         return NoSpaceError(f"no space left for {path}; free some and run the same command again to continue")
     return InputError(f"cannot write {path}: {error.strerror or error}")

@@ -7,6 +7,7 @@ provably gone. The clock is never consulted.
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import fcntl
 import json
@@ -15,6 +16,7 @@ import socket
 from pathlib import Path
 from types import TracebackType
 
+from scenegen.foundation.atomic import explained, is_full
 from scenegen.foundation.errors import InputError
 from scenegen.foundation.plain_file import open_plain
 
@@ -37,6 +39,8 @@ class DirectoryLock:
     InputError
         On entering, if another living process holds it, which is named with its host, or if a link or a pipe lies in
         the place of the lock.
+    NoSpaceError
+        On entering, if the device is too full for an empty file.
     """
 
     def __init__(self, directory: Path, name: str = ".lock") -> None:
@@ -61,6 +65,8 @@ class DirectoryLock:
         try:
             descriptor = open_plain(self.path, os.O_RDWR)
         except OSError as error:
+            if is_full(error):
+                raise explained(error, self.path) from None
             raise InputError(f"cannot lock {self.path.parent}: {error.strerror or error}") from None
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -77,7 +83,8 @@ class DirectoryLock:
         if not held:
             os.close(descriptor)
             return -1
-        _write_holder(descriptor)
+        with contextlib.suppress(OSError):  # of a full device: the lock holds without a name in it
+            _write_holder(descriptor)
         return descriptor
 
     def _attempt_without_flock(self) -> int:
@@ -94,7 +101,12 @@ class DirectoryLock:
                 claim.unlink(missing_ok=True)
                 return -1
             raise self._busy(holder) from None
-        _write_holder(descriptor)
+        try:
+            _write_holder(descriptor)
+        except OSError as error:  # a claim without a name could never be taken over
+            os.close(descriptor)
+            claim.unlink()
+            raise explained(error, claim) from None
         self.path = claim
         return descriptor
 
