@@ -9,7 +9,6 @@ import contextlib
 import io
 import re
 from collections.abc import Sequence
-from dataclasses import fields
 from itertools import pairwise
 from typing import Any, TypeVar
 
@@ -30,6 +29,7 @@ _IN_OUR_WORDS = (
     (re.compile(r"no type matching .+ Got errors: .+<class '\w+'>: "), ""),
     (re.compile(r"invalid literal for int\(\) with base 10: (.+)"), r"\1 is not a whole number"),
     (re.compile(r"could not convert string to float: (.+)"), r"\1 is not a number"),
+    (re.compile(r"Missing value for argument '(.+?)'\. Expected 1 values\."), r"\1: a value is missing"),
     (re.compile(r"Could not find valid parse for arguments: \[(.+)\]"), r"\1 cannot be read"),
 )
 
@@ -58,6 +58,7 @@ def parse(command: type[Command], name: str, arguments: Sequence[str], more_help
         say(command_help(command, name) + more_help)
         raise HelpShown
     takes = parameters(command)
+    _refuse_unknown(arguments, takes)
     _refuse_empty(arguments, takes)
     complaint = io.StringIO()
     try:
@@ -73,7 +74,7 @@ def parse(command: type[Command], name: str, arguments: Sequence[str], more_help
         text = _one_line(complaint.getvalue())
         raise InputError(f"{_missing(text, takes) or text} (see 'scenegen {name} --help')") from None
     if rest:
-        raise InputError(_unknown(rest[0], [f"--{f.name.replace('_', '-')}" for f in fields(command)]))  # type: ignore[arg-type]
+        raise InputError(_unknown(rest[0], _flags(takes)))
     return value
 
 
@@ -154,6 +155,19 @@ def _unknown(word: str, known: Sequence[str]) -> str:
     if not word.startswith("-"):
         return f"'{word}' is one word too many"
     return f"unknown flag '{word}'{nearest(word, known)}"
+
+
+def _flags(takes: Sequence[Parameter]) -> list[str]:
+    return [one.label.partition(" ")[0] for one in takes if not one.positional]
+
+
+def _refuse_unknown(arguments: Sequence[str], takes: Sequence[Parameter]) -> None:
+    """Before tyro takes the word behind a misspelt flag for that flag's value, and misses an argument."""
+    known = _flags(takes)
+    for word in arguments:
+        name = word.partition("=")[0].replace("_", "-")
+        if word.startswith("--") and name not in known:
+            raise InputError(_unknown(word, known))
 
 
 def _refuse_empty(arguments: Sequence[str], takes: Sequence[Parameter]) -> None:

@@ -25,7 +25,7 @@ class Push:
     dataset: Annotated[Path, tyro.conf.Positional]
     """Directory of the dataset."""
     url: Annotated[str, tyro.conf.Positional]
-    """Where to: a URL."""
+    """Where to, such as hf://datasets/USER/NAME."""
     private: bool = False
     """Make a new repository on the Hub private."""
     quick: bool = False

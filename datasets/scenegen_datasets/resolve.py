@@ -163,6 +163,7 @@ def _what(detail: ErrorDetails) -> str:
         detail["msg"]
         .replace("Input should be", "must be")
         .replace("valid integer", "whole number")
+        .replace("valid tuple", "list")
         .replace("valid ", "")
     )
     return f"{message}, not {shown}" if given is not None else f"{message}, not empty"

@@ -29,7 +29,10 @@ Count = Annotated[int, BeforeValidator(_no_bool), Field(strict=True)]
 def _span(value: Any) -> Any:
     if isinstance(value, int | float) and not isinstance(value, bool):
         return (value, value)
-    return tuple(value) if isinstance(value, list) else value
+    if isinstance(value, list | tuple) and len(value) == 2:
+        return tuple(value)
+    given = f"{len(value)} values" if isinstance(value, list | tuple) else f"{value!r:.60}"
+    raise ValueError(f"expected a number, or two for a range, not {given}")
 
 
 def _ordered(value: tuple[float, float]) -> tuple[float, float]:

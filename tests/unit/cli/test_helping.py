@@ -109,6 +109,7 @@ def test_every_command_explains_itself(capsys: pytest.CaptureFixture[str]) -> No
     [
         ([], "OLD is missing: The older one (see 'scenegen trial --help')"),
         (["a", "b"], "--to TEXT is missing: Format"),
+        (["--form", "a"], "unknown flag '--form'"),
     ],
 )
 def test_what_is_missing_is_named_as_in_the_help(words: list[str], message: str) -> None:

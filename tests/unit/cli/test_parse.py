@@ -57,7 +57,7 @@ def test_a_commands_flags_are_its_dataclass() -> None:
     [
         (["--pears", "8"], "unknown flag '--pears'; perhaps you meant '--pairs'"),
         (["--pairs", "x"], "--pairs: 'x' is not a whole number"),
-        (["--pairs"], "--pairs"),
+        (["--pairs"], "--pairs: a value is missing"),
         (["more"], "'more' is one word too many"),
     ],
 )

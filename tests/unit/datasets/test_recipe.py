@@ -87,6 +87,14 @@ def test_errors_name_the_source_that_set_the_key() -> None:
         resolve_recipe([file, flags])
 
 
+@pytest.mark.parametrize(("given", "shown"), [("x", "'x'"), ([1, 2, 3], "3 values"), (True, "True")])
+def test_what_is_no_range_is_told_what_a_range_is(given: object, shown: str) -> None:
+    with pytest.raises(
+        InputError, match=f"^--climate.hour: expected a number, or two for a range, not {shown}$"
+    ):
+        resolve_recipe([Source("", {"climate": {"hour": given}})])
+
+
 def test_unknown_keys_get_the_nearest_right_one() -> None:
     for asked, right in [
         ({"sensor": {"netdmk": 1}}, "netd_mk"),
