@@ -91,4 +91,5 @@ def _range(name: str, low: float, high: float) -> tuple[str, str]:
         words, unit = name.removeprefix("weather."), ""
     if words.endswith("hour"):
         unit = "h"
-    return words.replace("_", " "), f"{low:.4g} to {high:.4g} {_UNITS.get(unit, unit)}".rstrip()
+    span = " to ".join(dict.fromkeys(f"{end:.4g}" for end in (low, high)))
+    return words.replace("_", " "), f"{span} {_UNITS.get(unit, unit)}".rstrip()

@@ -77,6 +77,8 @@ CASES = [
     (["verify", "nowhere"], "no dataset at nowhere"),
     (["preview", "nowhere"], "no dataset at nowhere"),
     (["verify"], "DATASET is missing"),
+    (["verify", "--jsn", "nowhere"], "unknown flag '--jsn'; perhaps you meant '--json'"),
+    (["table1", "--data", "nowhere"], "no dataset at nowhere"),
     (["rendr"], "unknown command 'rendr'; perhaps you meant 'render'"),
 ]
 

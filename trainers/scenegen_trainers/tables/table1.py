@@ -15,6 +15,7 @@ from scenegen.foundation.lock import DirectoryLock
 from scenegen.foundation.pool import Done, Failed, Note, Pool, Task
 from scenegen_datasets.place import make_directory
 from scenegen_datasets.resolve import Source
+from scenegen_datasets.source import open_source
 from scenegen_trainers.evaluation.baselines import PAINTED_ROW_MEAN, ROW_MEAN
 from scenegen_trainers.evaluation.scores import NAMES
 from scenegen_trainers.tables.names import SCORES
@@ -166,6 +167,7 @@ def finish_runs(
     InputError
         As `run_table1`.
     """
+    open_source(job.data, allow_partial=False)  # what is wrong with it is said before anything is made
     make_directory(job.out.parent)
     root = make_directories(job.out.parent, job.out.name)
     make_directories(root, RUNS)
