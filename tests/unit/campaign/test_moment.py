@@ -14,7 +14,7 @@ from scenegen_datasets.resolve import Source
 from scenegen_trainers.campaign.moment import draw_moment
 from scenegen_trainers.campaign.plan import batches
 from scenegen_trainers.campaign.recipe import FlightRecipe, resolve_flights
-from scenegen_trainers.tables.table2 import flight_recipe
+from scenegen_trainers.tables.table2_recipe import flight_recipe
 
 SEASON = Season(50.0, 7, 15)
 SPLITS = {"test_hours": [20.0, 5.0], "test_weather": ["overcast"]}
