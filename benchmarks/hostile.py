@@ -24,6 +24,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests"))
 from hostile.campaign import Campaign, Read
 from hostile.mutants import MUTANTS
+from hostile.readers import READERS
 
 TELL_EVERY_S = 20.0
 
@@ -58,6 +59,13 @@ def main() -> None:
     parser.add_argument("--mutants", type=int, default=300)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--kind", choices=sorted(MUTANTS), help="this kind alone")
+    parser.add_argument(
+        "--readers",
+        nargs="+",
+        choices=READERS,
+        default=[],
+        help="these alone, whether or not it is their turn",
+    )
     parser.add_argument("--log", type=Path)
     options = parser.parse_args()
     wanted = range(options.seed, options.seed + options.mutants)
@@ -67,7 +75,7 @@ def main() -> None:
         for seed in wanted:
             if seed in done:
                 continue
-            read = done[seed] = campaign.read(seed, options.kind)
+            read = done[seed] = campaign.read(seed, options.kind, tuple(options.readers))
             for reader, what in read.wrong.items():
                 print(f"seed {seed}, {read.kind}, {reader}: {what}", flush=True)
             if options.log is not None:

@@ -11,12 +11,13 @@ from hostile.documents import agree
 from hostile.typed import check_pages, typed
 from scenegen.foundation.canonical import pretty
 from scenegen.foundation.errors import ScenegenError
-from scenegen_datasets.inside import walk
+from scenegen_datasets.inside import read_inside, walk
 from scenegen_datasets.lock import recipe_id
 from scenegen_datasets.seal import with_seal
-from scenegen_datasets.store import CARD, DATASET, LOCK
+from scenegen_datasets.store import CARD, DATASET, LOCK, MANIFEST
 
 _OTHER_SEED = 7
+_MOST_BYTES = 1 << 24
 
 
 class MadeError(Exception):
@@ -72,10 +73,10 @@ def _state(root: Path) -> dict[str, tuple[int, int]]:
 
 def _reseed(root: Path, seed: int) -> None:
     """Let a dataset say that it was made from another seed, lock and description in agreement."""
-    lock = json.loads((root / LOCK).read_bytes())
+    plain = [read_inside(root, name, _MOST_BYTES) for name in (LOCK, DATASET, MANIFEST)]
+    lock, told = map(json.loads, plain[:2])
     lock["recipe"]["seed"] = seed
     lock["recipe_id"] = recipe_id(lock["recipe"], lock["scene_semantics"])
-    told = json.loads((root / DATASET).read_bytes())
     told.pop("seal")
     told["recipe_id"] = lock["recipe_id"]
     (root / LOCK).write_bytes(pretty(lock))
