@@ -29,6 +29,8 @@ class Repair:
 
     dataset: Annotated[Path, tyro.conf.Positional]
     """Directory of the dataset."""
+    own_files: tuple[Path, ...] = ()
+    """Scenes and recordings of your own, if they do not lie where recipe.yaml says; told by content."""
     jobs: int = 0
     """Processes; 0 is one per CPU."""
     json: bool = False
@@ -43,7 +45,8 @@ def run(arguments: Sequence[str]) -> int:
     from scenegen_datasets.repair.repair import repair
 
     with Meter(quiet=command.json) as meter:
-        done = repair(command.dataset, processes(command.jobs), meter.frames, meter.verified)
+        workers = processes(command.jobs)
+        done = repair(command.dataset, workers, meter.frames, meter.verified, command.own_files)
     if command.json:
         say_json({**asdict(done), "ok": done.after.ok})
     else:

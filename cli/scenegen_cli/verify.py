@@ -35,6 +35,8 @@ class Verify:
     """So many random frames are rendered again, from the lock alone, and compared."""
     seed: int = 0
     """Seed that draws those frames."""
+    own_files: tuple[Path, ...] = ()
+    """Scenes and recordings of your own, for --rerender, if they do not lie where recipe.yaml says."""
     jobs: int = 0
     """Processes; 0 is one per CPU."""
     json: bool = False
@@ -57,7 +59,9 @@ def run(arguments: Sequence[str]) -> int:
         if command.rerender and report.ok:
             from scenegen_datasets.verify.rerender import rerender
 
-            again = rerender(command.dataset, command.rerender, workers, command.seed, meter.frames)
+            again = rerender(
+                command.dataset, command.rerender, workers, command.seed, meter.frames, command.own_files
+            )
     findings = report.findings if again is None else again.findings
     if command.json:
         more = {"rerendered": None if again is None else asdict(again)} if command.rerender else {}

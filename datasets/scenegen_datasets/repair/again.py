@@ -17,6 +17,7 @@ from scenegen.foundation.errors import DatasetError, InputError
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.lock import SOURCE
 from scenegen_datasets.receipt import read_receipt
+from scenegen_datasets.repair.own_files import located
 from scenegen_datasets.repair.remake import Told, job_of, remake
 from scenegen_datasets.sensing.run import film_again
 from scenegen_datasets.store import LOCK
@@ -41,6 +42,8 @@ class Again:
         Directory of the log of costs.
     told : callable
         Hears of rendering.
+    own_files : tuple of Path
+        Scenes and recordings that the user named; they are told by content.
     """
 
     root: Path
@@ -48,6 +51,7 @@ class Again:
     fingerprint: str
     log_root: Path
     told: Told
+    own_files: tuple[Path, ...] = ()
 
     def make(self, lock: Entry, clips: Sequence[ClipJob], into: Path) -> dict[str, str]:
         """Make clips of the dataset with this lock; shards and receipts lie below `into` as they do there.
@@ -71,7 +75,7 @@ class Again:
             return self._merge(entry, clips, into)
         if "sensed" in entry["recipe"]:
             return self._sense(entry, clips, into)
-        job = job_of(self.root, entry, own, into, self.processes)
+        job = located(job_of(self.root, entry, into, self.processes), clips, self.root, own, self.own_files)
         return remake(job, clips, self.fingerprint, self.log_root, self.told)
 
     def _merge(self, entry: Entry, clips: Sequence[ClipJob], into: Path) -> dict[str, str]:
@@ -103,21 +107,21 @@ class Again:
         return failed
 
 
-def planned(root: Path, lock: Entry, own: bool = True) -> tuple[ClipJob, ...]:
+def planned(root: Path, lock: Entry) -> tuple[ClipJob, ...]:
     """All clips a dataset should have, in plan order.
 
     Raises
     ------
     InputError
-        If this scenegen cannot tell, because the recipe is of another version, or files of the user are needed.
+        If this scenegen cannot tell, because the recipe is of another version.
     DatasetError
         If the lock makes no sense.
     """
     if lock.get("parts"):
         return tuple(place.whole for place in _places(root, lock))
     if "sensed" in lock["recipe"]:
-        return planned(root, _source(root, lock), own=False)
-    return job_of(root, lock, own).clips
+        return planned(root, _source(root, lock))
+    return job_of(root, lock).clips
 
 
 @dataclass(frozen=True)
@@ -134,7 +138,7 @@ def _places(root: Path, lock: Entry) -> list[_Place]:
     found = []
     for part in lock["parts"]:
         offset, missing = offset_of(part), set(part["missing"])
-        for job in planned(root, part, own=False):
+        for job in planned(root, part):
             if job.name not in missing:
                 found.append((job.world + offset, job.map, job.clip, part, job))
     found.sort(key=lambda place: place[:3])

@@ -9,22 +9,20 @@ from typing import Any
 from pydantic import ValidationError
 
 from scenegen.foundation.errors import InputError
-from scenegen.foundation.strict_yaml import read_mapping
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.lock import VOLATILE_KEYS, fingerprint, recipe_id
 from scenegen_datasets.probe import render_fingerprint
-from scenegen_datasets.recipe import SCENE_SEMANTICS, Recipe, refuse_too_large_a_plan, resolve_recipe
+from scenegen_datasets.recipe import SCENE_SEMANTICS, Recipe, refuse_too_large_a_plan
 from scenegen_datasets.render_job import Job
-from scenegen_datasets.resolve import Source
 from scenegen_datasets.run import Progress, make_clips
 from scenegen_datasets.run_log import RunLog
-from scenegen_datasets.store import LOCK, RECIPE
+from scenegen_datasets.store import LOCK
 
 Told = Callable[[Progress], None]
 
 
-def recipe_of(root: Path, entry: Mapping[str, Any], own: bool = True) -> Recipe:
-    """The recipe clips were rendered by; own scenes and recordings are found where ``recipe.yaml`` says.
+def recipe_of(root: Path, entry: Mapping[str, Any]) -> Recipe:
+    """The recipe clips were rendered by; of files of the user's own it holds the content, not the place.
 
     Parameters
     ----------
@@ -32,13 +30,11 @@ def recipe_of(root: Path, entry: Mapping[str, Any], own: bool = True) -> Recipe:
         The dataset.
     entry : mapping
         Its lock, or what that says of a dataset it was made from.
-    own : bool
-        Whether `entry` is the lock itself, to which ``recipe.yaml`` belongs.
 
     Raises
     ------
     InputError
-        If this version of scenegen would make other samples of it, or a file it needs is not there.
+        If this version of scenegen would make other samples of it.
     """
     if entry.get("scene_semantics") != SCENE_SEMANTICS:
         raise InputError(
@@ -52,14 +48,6 @@ def recipe_of(root: Path, entry: Mapping[str, Any], own: bool = True) -> Recipe:
         raise InputError(
             f"{root / LOCK}: not a recipe of this scenegen: {str(error).splitlines()[0]}"
         ) from None
-    if _needs_files(recipe):
-        if not own:
-            raise InputError(
-                f"{root} needs scenes or recordings of your own, and only the dataset it was made from knows where "
-                "they lie; repair that one, then make this one again"
-            )
-        asked = resolve_recipe([Source(str(root / RECIPE), read_mapping(root / RECIPE))])
-        recipe = recipe.model_copy(update={"scenes": asked.scenes, "flight": asked.flight})
     if recipe_id(recipe.canonical(), SCENE_SEMANTICS) != entry["recipe_id"]:
         raise InputError(
             f"{root}: this scenegen reads another recipe out of {LOCK} than the one that was rendered; install the "
@@ -68,14 +56,12 @@ def recipe_of(root: Path, entry: Mapping[str, Any], own: bool = True) -> Recipe:
     return recipe
 
 
-def job_of(
-    root: Path, entry: Mapping[str, Any], own: bool = True, into: Path | None = None, processes: int = 1
-) -> Job:
+def job_of(root: Path, entry: Mapping[str, Any], into: Path | None = None, processes: int = 1) -> Job:
     """The job that rendered a dataset; its `clips` are the plan.
 
     Parameters
     ----------
-    root, entry, own
+    root, entry
         As for `recipe_of`.
     into : Path, optional
         Directory to render into, instead of the dataset's own.
@@ -86,7 +72,7 @@ def job_of(
     InputError
         As `recipe_of`, or if the lock does not say how many pairs there are to be.
     """
-    recipe, pairs = recipe_of(root, entry, own), entry["recipe"].get("pairs")
+    recipe, pairs = recipe_of(root, entry), entry["recipe"].get("pairs")
     if type(pairs) is not int or not 1 <= pairs <= 10**8:
         raise InputError(
             f"{root / LOCK}: does not say how many pairs the dataset has; restore it from a copy"
@@ -131,8 +117,3 @@ def remake(
     with RunLog(log_root) as log:
         log.write("remake", clips=[clip.name for clip in clips], fingerprint=fingerprint)
         return make_clips(job, clips, fingerprint, log, told)
-
-
-def _needs_files(recipe: Recipe) -> bool:
-    recorded = "recorded" in recipe.flight.styles and not recipe.flight.recorded.file
-    return recorded or any(not scene.file for name, scene in recipe.scenes.items() if name in recipe.map)

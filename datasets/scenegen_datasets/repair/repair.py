@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,6 +11,7 @@ from typing import Any
 from scenegen.foundation.atomic import make_directories, sync_directory
 from scenegen.foundation.errors import DatasetError, InputError
 from scenegen.foundation.lock import DirectoryLock
+from scenegen.foundation.words import counted
 from scenegen_datasets.finish import derive
 from scenegen_datasets.inside import sha256_inside
 from scenegen_datasets.job import ClipJob
@@ -56,7 +57,11 @@ class Repaired:
 
 
 def repair(
-    root: Path, processes: int, told: Told = lambda _: None, verified: Verified | None = None
+    root: Path,
+    processes: int,
+    told: Told = lambda _: None,
+    verified: Verified | None = None,
+    own_files: Sequence[Path] = (),
 ) -> Repaired:
     """Make a dataset what it was, byte for byte; what is sound is not touched. May be killed and run again.
 
@@ -69,12 +74,14 @@ def repair(
         Hears of rendering.
     verified : callable, optional
         Hears of verification: (clips done, clips in all).
+    own_files : sequence of Path
+        Scenes and recordings of the user's, where they do not lie any more as ``recipe.yaml`` says.
 
     Raises
     ------
     InputError
         If there is no dataset, somebody writes to it, this machine would render other bytes (with what differs), or
-        files of the user are needed that only a dataset it was made from knows.
+        files of the user are needed that cannot be found.
     DatasetError
         If the lock itself is damaged, from which everything else follows.
     """
@@ -87,9 +94,11 @@ def repair(
             return Repaired(before, before, healed, False, (), ())
         refuse_lost_history(root)
         found = survey(root, lock, checks)
-        _refuse_growing(root, found)
+        _refuse_growing(root, lock, found)
         rewritten = rewrite_recipe(root, lock)
-        remade, failed = _remake(root, lock, found, processes, told) if found.broken else ([], {})
+        remade, failed = (
+            _remake(root, lock, found, processes, told, tuple(own_files)) if found.broken else ([], {})
+        )
         _derive(root, found, failed, before)
         after = examine(root, processes, progress=verified)[0]
     return Repaired(before, after, healed, rewritten, tuple(remade), tuple(sorted(failed.items())))
@@ -108,16 +117,22 @@ def _sound_lock(root: Path) -> dict[str, Any]:
     return lock
 
 
-def _refuse_growing(root: Path, found: Survey) -> None:
+def _refuse_growing(root: Path, lock: Mapping[str, Any], found: Survey) -> None:
     if found.broken and not (root / DATASET).exists() and not (root / MANIFEST).exists():
+        maker = "merge" if lock.get("parts") else "sense" if SOURCE in lock else "render"
         raise InputError(
-            f"{root} is not finished: {len(found.broken)} clips are missing or broken; the same render command makes "
-            "them all"
+            f"{root} is not finished: {counted(len(found.broken), 'clip')} missing or broken; the same {maker} command "
+            "goes on with it"
         )
 
 
 def _remake(
-    root: Path, lock: Mapping[str, Any], found: Survey, processes: int, told: Told
+    root: Path,
+    lock: Mapping[str, Any],
+    found: Survey,
+    processes: int,
+    told: Told,
+    own_files: tuple[Path, ...],
 ) -> tuple[list[str], dict[str, str]]:
     """Render the broken clips beside the dataset, and let those that came out right take their places."""
     from scenegen_datasets.repair.again import Again
@@ -128,7 +143,8 @@ def _remake(
     remove_inside(root, SCRATCH)
     scratch = make_directories(root, SCRATCH)
     try:
-        failed = Again(root, processes, fingerprint_id(here), root, told).make(lock, found.broken, scratch)
+        again = Again(root, processes, fingerprint_id(here), root, told, own_files)
+        failed = again.make(lock, found.broken, scratch)
         remade = []
         for clip in found.broken:
             if clip.name in failed:

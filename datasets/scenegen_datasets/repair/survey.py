@@ -60,8 +60,7 @@ def survey(root: Path, lock: Mapping[str, Any], checks: Sequence[ClipCheck]) -> 
     Raises
     ------
     InputError
-        If clips are broken or missing and the plan cannot be told, because its recipe is of another version, or needs
-        files that cannot be found.
+        If clips are broken or missing and the plan cannot be told, because its recipe is of another version.
     """
     manifest = _manifest(root)
     sound = {c.job: c for c in checks if c.job is not None and not c.findings}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -47,7 +47,12 @@ class Rerendered:
 
 
 def rerender(
-    root: Path, count: int, processes: int, seed: int = 0, told: Callable[[Progress], None] = lambda _: None
+    root: Path,
+    count: int,
+    processes: int,
+    seed: int = 0,
+    told: Callable[[Progress], None] = lambda _: None,
+    own_files: Sequence[Path] = (),
 ) -> Rerendered:
     """Render `count` frames again and compare; their clips are made whole, for a frame's noise depends on those before.
 
@@ -63,11 +68,14 @@ def rerender(
         Of the draw.
     told : callable
         Hears of progress.
+    own_files : sequence of Path
+        Scenes and recordings of the user's, where they do not lie any more as ``recipe.yaml`` says.
 
     Raises
     ------
     InputError
-        If there is no frame, or this scenegen would make other samples of the recipe.
+        If there is no frame, this scenegen would make other samples of the recipe, or files of the user are needed
+        that cannot be found.
     """
     from scenegen_datasets.repair.again import Again
     from scenegen_datasets.repair.remake import fingerprint_here
@@ -82,7 +90,7 @@ def rerender(
     identical = 0
     with tempfile.TemporaryDirectory(prefix="scenegen-rerender-") as folder:
         scratch = Path(folder)
-        again = Again(root, processes, here, scratch, told)
+        again = Again(root, processes, here, scratch, told, tuple(own_files))
         failed = again.make(lock, [r.clip.job for r, _ in chosen], scratch)
         for old, frames in chosen:
             name = old.clip.job.name

@@ -104,7 +104,7 @@ def studio(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """Clips of these maps are made again without a renderer; gives the names of those that were."""
     made: list[str] = []
 
-    def job_of(root: Path, entry: dict[str, Any], own: bool = True, into: Any = None, _: int = 1) -> Any:
+    def job_of(root: Path, entry: dict[str, Any], into: Any = None, _: int = 1) -> Any:
         (map,), clips = entry["recipe"]["map"], entry["recipe"]["pairs"] // _fakes.PAIRS
         plan = tuple(replace(job, map=map) for job in _fakes.jobs(clips))
         return SimpleNamespace(root=into or root, clips=plan)
@@ -116,6 +116,7 @@ def studio(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         return {}
 
     monkeypatch.setattr("scenegen_datasets.repair.again.job_of", job_of)
+    monkeypatch.setattr("scenegen_datasets.repair.again.located", lambda job, *_: job)
     monkeypatch.setattr("scenegen_datasets.repair.again.remake", remake)
     monkeypatch.setattr(
         "scenegen_datasets.repair.remake.fingerprint_here", lambda: fingerprint(_fakes.RENDER)

@@ -5,7 +5,6 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -134,16 +133,3 @@ def test_a_sensed_dataset_that_does_not_know_its_source_says_what_to_do(
             planned(root, {**old, "source": wrong})
     assert main(["sense", str(whole), "--out", str(root), "--seed", "5", "--jobs", "1"]) == 0
     assert verify(root).ok and "source" in read_lock(root), "the same command completes the lock"
-
-
-def test_scenes_of_ones_own_are_found_by_their_own_dataset_only(whole: Path) -> None:
-    """The recipe of a part knows what a scene is, not where its file lies."""
-    from scenegen_datasets.recipe import SCENE_SEMANTICS
-    from scenegen_datasets.repair.remake import recipe_of
-
-    recipe = {"map": ["yard"], "scenes": {"yard": {"sha256": "0" * 64}}, "pairs": 4}
-    entry = {"recipe": recipe, "scene_semantics": SCENE_SEMANTICS, "recipe_id": "0" * 64}
-    with pytest.raises(
-        InputError, match="scenes or recordings of your own, and only the dataset it was made from"
-    ):
-        recipe_of(whole, json.loads(json.dumps(entry)), own=False)
