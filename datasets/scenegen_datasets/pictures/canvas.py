@@ -10,6 +10,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from scenegen_datasets.pictures import colour
+from scenegen_datasets.pictures.ramp import depth_ticks
 from scenegen_datasets.pictures.scales import Tone
 
 GROUND = (16, 19, 24)
@@ -77,7 +78,8 @@ class Canvas:
         length = width_px - sky
         ramp = np.repeat(colour.colormap()[::-1][None], 8, axis=0)
         self.picture(x, y + 1, np.asarray(cv2.resize(ramp, (length, 8), interpolation=cv2.INTER_LINEAR)))
-        for tick, anchor in _ticks(low_m, high_m):
+        ticks = depth_ticks(low_m, high_m)
+        for tick, anchor in zip(ticks, ("ls", *("ms",) * (len(ticks) - 2), "rs"), strict=True):
             place = x + length * math.log(tick / low_m) / math.log(high_m / low_m)
             self.text(place, y + 21, f"{tick:g} m", 11, FAINT, anchor)
         self.swatch(x + width_px - sky + 12, y + 1, 8, colour.SKY_COLOUR)
@@ -91,10 +93,3 @@ class Canvas:
         inside = np.clip((1.0 - np.hypot(u, v)) * size_px / 2 + 0.5, 0.0, 1.0)[..., None]
         mixed = inside * wheel + (1.0 - inside) * np.array(GROUND)
         self.picture(x, y, np.asarray(np.rint(mixed), np.uint8))
-
-
-def _ticks(low_m: float, high_m: float) -> list[tuple[float, str]]:
-    """Both ends and the powers of ten between them that leave room; with Pillow text anchors."""
-    decades = range(math.ceil(math.log10(low_m)), math.floor(math.log10(high_m)) + 1)
-    between = [10.0**k for k in decades if low_m * 2.6 < 10.0**k < high_m / 2.6]
-    return [(low_m, "ls"), *((tick, "ms") for tick in between), (high_m, "rs")]

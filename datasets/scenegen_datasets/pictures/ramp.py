@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -52,3 +53,10 @@ def depth_ramp(span_m: tuple[float, float]) -> Ramp:
     """Colours of distances, near first; logarithmic."""
     stops = np.linspace(255, 0, STOPS).round().astype(int)
     return ramp_of(f"{span_m[0]:g}\u00a0m", f"{span_m[1]:g}\u00a0m", colormap()[stops])
+
+
+def depth_ticks(low_m: float, high_m: float) -> list[float]:
+    """Both ends [m] and the powers of ten between them that leave room for their words."""
+    decades = range(math.ceil(math.log10(low_m)), math.floor(math.log10(high_m)) + 1)
+    between = [10.0**k for k in decades if low_m * 2.6 < 10.0**k < high_m / 2.6]
+    return [low_m, *between, high_m]

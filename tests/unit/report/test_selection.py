@@ -3,15 +3,30 @@
 import io
 from itertools import pairwise
 from pathlib import Path
+from xml.etree import ElementTree
 
 import numpy as np
+import pytest
 from PIL import Image
 
+from scenegen_datasets.pictures.ramp import depth_ticks
 from scenegen_datasets.pictures.shot import Shot
+from scenegen_datasets.report.depth_bar import depth_bar
 from scenegen_datasets.report.media import flight_within, tiles, webp
 from scenegen_datasets.report.origin import cost, read_log
 from scenegen_datasets.report.selection import spread_out
 from scenegen_datasets.report.words import decimals, plain, tied
+
+
+def test_the_bar_of_depth_puts_its_words_where_the_distances_are() -> None:
+    drawn = ElementTree.fromstring(depth_bar(2.0, 200.0)).find("svg")
+    assert drawn is not None
+    words = [(e.text, float(e.get("x", 0))) for e in drawn.iter("text")]
+    assert [said for said, _ in words] == ["2\u00a0m", "10\u00a0m", "200\u00a0m"]
+    low, ten, high = (x for _, x in words)
+    assert (ten - low) / (high - low) == pytest.approx(np.log(5.0) / np.log(100.0), abs=0.002)
+    assert depth_ticks(5.0, 1000.0) == [5.0, 100.0, 1000.0]  # 10 m would stand on the 5
+    assert depth_ticks(5.0, 10.0) == [5.0, 10.0]
 
 
 def clip(map: str, sun_deg: float) -> dict[str, object]:

@@ -13,6 +13,7 @@ from PIL import Image
 
 from scenegen.foundation.errors import InputError
 from scenegen_datasets.loader import PairDataset
+from scenegen_trainers.evaluation import words
 from scenegen_trainers.evaluation.baselines import fit_baselines
 from scenegen_trainers.evaluation.bootstrap import intervals, margins, sums_of
 from scenegen_trainers.evaluation.evaluate import evaluate
@@ -88,11 +89,9 @@ def test_the_page_shows_every_stratum_beside_a_trivial_answer(toy: Path, tmp_pat
     page, markdown = (path.read_text() for path in write_report(found, answer, data, tmp_path)[:2])
     for heading in ("By true distance", "By day and by night", "By map", "By class"):
         assert f"<h2>{heading}</h2>" in page and f"## {heading}" in markdown
-    for words in ("0.5 to 20 m", "night", "city", "road", "row mean", "sky as cap", "Best answers"):
-        assert words in page
-    assert (
-        page.count("data:image/webp") == 1 + 2 * 2 * 4
-    )  # depth scale; best and worst of two clips, four tiles each
+    for said in ("0.5 to 20 m", "night", "city", "road", "row mean", "sky as cap", "Best answers"):
+        assert said in page
+    assert page.count("data:image/webp") == 2 * 2 * 4  # best and worst of two clips, four tiles each
     assert 'src="http' not in page and 'href="http' not in page
     low, high = found.margins["row mean"][WHOLE]["rmse_m"]
     said = "better than" if low > 0 else "worse than" if high < 0 else "open against"
@@ -175,6 +174,15 @@ def test_margins_are_drawn_on_the_same_clips() -> None:
     assert margins(theirs, ours, np.random.default_rng(1))["rel"][1] < 0.0
     low, high = intervals(ours, np.random.default_rng(1))["rel"]
     assert high - low > 0.2
+
+
+def test_a_single_flight_tells_nothing_apart() -> None:
+    assert [words.verdict(margin) for margin in ((0.1, 0.4), (-0.4, -0.1), (-0.1, 0.1), (0.2, 0.2))] == [
+        "better",
+        "worse",
+        "open",
+        "open",
+    ]
 
 
 def test_the_trend_of_answers_by_hand() -> None:

@@ -7,13 +7,14 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from scenegen.foundation.canonical import pretty
-from scenegen_datasets.pages.axes import log_ticks, tick_words
 from scenegen_datasets.pages.charts import LARGE, Bars, Curve, curves, histogram, key
 from scenegen_datasets.pages.document import document
 from scenegen_datasets.pages.markup import Html, element, folded, join, picture
 from scenegen_datasets.pages.sheet import FAINT, SERIES
 from scenegen_datasets.pages.tables import Column, number, table
 from scenegen_datasets.pictures import colour
+from scenegen_datasets.report.depth_bar import SHEET as DEPTH_SHEET
+from scenegen_datasets.report.depth_bar import css, depth_bar
 from scenegen_datasets.report.media import webp
 from scenegen_datasets.report.words import card, cards
 from scenegen_trainers.evaluation import words
@@ -27,7 +28,6 @@ from scenegen_trainers.evaluation.pictures import (
     TOO_FAR,
     TOO_NEAR,
     WORST_RATIO,
-    enlarged,
     tiles,
 )
 from scenegen_trainers.evaluation.scores import HEADS, head_of
@@ -42,10 +42,9 @@ SHEET = """
 .tiles{display:grid;grid-template-columns:repeat(4,minmax(0,1fr));gap:8px;max-width:1080px}
 .tiles img{width:100%;image-rendering:pixelated}
 .tiles .small{display:block;margin-top:4px;font-size:12px}
-.ramp{max-width:420px;flex:1 1 260px}
-.scales{display:flex;flex-wrap:wrap;gap:10px 34px;align-items:flex-end;margin:14px 0 4px}
 td .small{font-weight:400}
 @media(max-width:760px){.tiles{grid-template-columns:repeat(2,minmax(0,1fr))}}
+@media print{.answer{break-inside:avoid}.tiles{grid-template-columns:repeat(4,minmax(0,1fr))}}
 """
 
 _CLASS = {"better": "good", "worse": "bad", "open": "faint"}
@@ -74,13 +73,14 @@ def page(evaluation: Evaluation, best: Shown, worst: Shown) -> str:
         _answers(evaluation),
         *_strata(evaluation),
         element("h2", "Best answers"),
+        element("p", words.shown(evaluation), class_="small"),
         _scales(cap_m),
         *(_answer(*shown, cap_m) for shown in best),
         element("h2", "Worst answers"),
         *(_answer(*shown, cap_m) for shown in worst),
         element("h2", "How the network came to be"),
         folded("record of its training", element("pre", pretty(dict(evaluation.record)).decode())),
-        sheet=SHEET,
+        sheet=DEPTH_SHEET + SHEET,
     )
 
 
@@ -128,7 +128,7 @@ def _charts(evaluation: Evaluation) -> Html:
         elif name == words.rival_of(evaluation, WHOLE):
             lines.append(Curve(name, trend.truth_m, trend.median_m, ink))
             named_lines.append((ink, f"{name}, median"))
-    drawn = curves(lines, "true depth [m]", (near, far), (near, far), log_x=True, log_y=True, unit=" m")
+    drawn = curves(lines, "true depth [m]", (near, far), (near, far), log_x=True, log_y=True, up="answer [m]")
     return cards(
         card("What is answered to pixels of one true depth", key(named_lines), drawn),
         card("Images by their Rel", _spread(evaluation)),
@@ -143,7 +143,8 @@ def _spread(evaluation: Evaluation) -> Html:
     counts = np.histogram(found, edges)[0]
     bars = Bars("images", edges.tolist(), counts.tolist())
     middle = float(np.median(found))
-    return histogram([bars], "Rel of an image", log=True, mark=(middle, f"median {middle:.2f}"), frame=LARGE)
+    mark = (middle, f"median {middle:.2f}")
+    return histogram([bars], "Rel of an image", log=True, mark=mark, up="% of the images", frame=LARGE)
 
 
 def _answers(evaluation: Evaluation) -> Html:
@@ -196,20 +197,11 @@ def _answer(judged: Judged, answer: Answer, cap_m: float) -> Html:
 
 def _scales(cap_m: float) -> Html:
     """What the colours of depth and error mean."""
-    ramp = enlarged(colour.colormap()[::-1][None], 1)
-    bar = picture(webp(ramp, exact=True), "webp", "colours of depth", 256, 1, style="width:100%;height:12px")
-    ticks = [NEAR_M, *(t for t in log_ticks(NEAR_M, cap_m) if NEAR_M * 1.5 < t < cap_m / 1.5), cap_m]
-    marks = element(
-        "div",
-        *(element("span", f"{tick_words(tick)} m") for tick in ticks),
-        class_="small",
-        style="display:flex;justify-content:space-between",
-    )
     said = (
         (TOO_NEAR, f"{WORST_RATIO:g} times too near"),
         (RIGHT, "right"),
         (TOO_FAR, f"{WORST_RATIO:g} times too far"),
         (colour.SKY_COLOUR, "sky, or beyond the cap"),
     )
-    inks = [(f"rgb{ink}".replace(" ", ""), what) for ink, what in said]
-    return element("div", element("div", bar, marks, class_="ramp"), key(inks), class_="scales")
+    inks = key([(css(ink), what) for ink, what in said])
+    return element("div", depth_bar(NEAR_M, cap_m), inks, class_="scales")

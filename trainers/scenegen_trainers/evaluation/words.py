@@ -132,9 +132,28 @@ def interval_words(span: Interval, name: str) -> str:
     return f"{figure(name, span[0])} to {figure(name, span[1])}"
 
 
+def shown(evaluation: Evaluation) -> str:
+    """What stands in the pictures of answers; a reader would take embedded flow for dead pixels."""
+    said = "Estimate and truth share one scale. Input is what the network is given."
+    recipe = evaluation.record.get("recipe")
+    inputs = recipe.get("inputs") if isinstance(recipe, Mapping) else None
+    if not isinstance(inputs, Mapping) or inputs.get("flow", "none") == "none":
+        return said
+    if inputs.get("flow_shown", "embedded") != "embedded":
+        return f"{said} The channel of flow is not shown."
+    every = inputs.get("interval", 5)
+    where = f"at every multiple of {every} in row and column" if every != 1 else "everywhere"
+    return f"{said} Its dots are the simplified depth image, embedded {where}."
+
+
 def verdict(margin: Interval) -> str:
-    """ "better", "worse" or "open": what the interval of the network's margin says."""
+    """ "better", "worse" or "open": what the interval of the network's margin says.
+
+    One without width comes from a single flight, whose draws are all alike: it says nothing.
+    """
     low, high = margin
+    if low == high:
+        return "open"
     return "better" if low > 0.0 else "worse" if high < 0.0 else "open"
 
 
