@@ -13,7 +13,7 @@ SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 _LARGE_PX = 450  # what is wider gets larger letters on a narrow page
-_UP_PX = 14
+_UP_PX = 17
 
 
 @dataclass(frozen=True)
@@ -96,7 +96,7 @@ class Frame:
     height: int = 190
     left: int = 40
     right: int = 12
-    top: int = 10
+    top: int = 12
     bottom: int = 38
 
     def across(self, low: float, high: float, log: bool = False) -> Scale:
@@ -135,7 +135,7 @@ class Frame:
 
     def upright(self, words: str) -> str:
         """Words of the axis on the left, level above it."""
-        return f'<text class="up" x="2" y="12">{text(words)}</text>' if words else ""
+        return f'<text class="up" x="2" y="15">{text(words)}</text>' if words else ""
 
     def under(self, words: str) -> Frame:
         """The same frame with room for these words above."""

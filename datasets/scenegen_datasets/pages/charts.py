@@ -234,7 +234,8 @@ def interval_bar(share: float, low: float, high: float, colour: str = SERIES[0])
 
 
 def stacked_bar(parts: Sequence[tuple[float, str, str]]) -> Html:
-    """Shares side by side: (share, colour, words under the pointer)."""
+    """Shares side by side: (share, colour, words under the pointer and for those who cannot see it)."""
+    said = "; ".join(words for share, _, words in parts if share)
     x, drawn = 0.0, []
     for share, colour, words in parts:
         width = 300 * share
@@ -242,7 +243,10 @@ def stacked_bar(parts: Sequence[tuple[float, str, str]]) -> Html:
             f'<rect x="{x:.2f}" width="{width:.2f}" height="14" fill="{colour}"><title>{text(words)}</title></rect>'
         )
         x += width
-    return Html(f'<svg viewBox="0 0 300 14" class="bar" preserveAspectRatio="none">{"".join(drawn)}</svg>')
+    return Html(
+        '<svg viewBox="0 0 300 14" class="bar" preserveAspectRatio="none" role="img" '
+        f'aria-label="{text(said)}">{"".join(drawn)}</svg>'
+    )
 
 
 def key(entries: Sequence[tuple[str, str]]) -> Html:

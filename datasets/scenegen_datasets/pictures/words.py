@@ -8,10 +8,15 @@ from typing import Any
 _MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 
 
+def clock(hour: float) -> str:
+    """Such as ``05:12``."""
+    minutes = int(hour * 60.0) % 1440
+    return f"{minutes // 60:02d}:{minutes % 60:02d}"
+
+
 def time_of_day(hour: float) -> str:
     """Local mean solar time, such as ``05:12 solar time``."""
-    minutes = int(hour * 60.0) % 1440
-    return f"{minutes // 60:02d}:{minutes % 60:02d} solar time"
+    return f"{clock(hour)} solar time"
 
 
 def date(month: int, day: int) -> str:
@@ -20,8 +25,9 @@ def date(month: int, day: int) -> str:
 
 
 def latitude(degrees: float) -> str:
-    """Such as ``48°N``."""
-    return f"{abs(degrees):.0f}°{'N' if degrees >= 0 else 'S'}"
+    """Such as ``48°N``; the equator has no side."""
+    whole = round(degrees)
+    return f"{abs(whole)}°{'N' if whole > 0 else 'S' if whole else ''}"
 
 
 def sky(cloud_fraction: float) -> str:

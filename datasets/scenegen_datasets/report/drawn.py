@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from scenegen.classes import CLASSES
+from scenegen.foundation.words import counted
 from scenegen_datasets.audits.contents import Contents
 from scenegen_datasets.audits.draws import Draw, Draws, Tally
 from scenegen_datasets.pages.charts import histogram, key, share_bar
@@ -13,7 +14,7 @@ from scenegen_datasets.pages.markup import Html, element, folded, text
 from scenegen_datasets.pages.sheet import SERIES
 from scenegen_datasets.pages.tables import Column, number, table
 from scenegen_datasets.pictures.colour import SKY_COLOUR
-from scenegen_datasets.report.words import bars, card, cards, decimals, note, plain, said
+from scenegen_datasets.report.words import bars, card, cards, decimals, figure, note, plain, said
 
 _SHOWN = {
     "depth_m": ("depth of surfaces", "m", True),
@@ -41,37 +42,40 @@ _TICKS = {
 """Where round numbers are not what people think in."""
 
 _UNITS = {"deg": "°", "d": ""}
+_ASKED = ("var(--span)", "the range the recipe asks for")
 _SLOWER = "bends, orbits, approaches and landings are flown more slowly than the cruise speed asked for"
 
 
 def drawn(draws: Draws) -> Html:
     """Every quantity as a distribution over the range that was asked for, and the tallies."""
-    shaded = key([(SERIES[0], "share of the draws"), ("var(--span)", "the range the recipe asks for")])
+    shaded = key([(SERIES[0], "share of the draws"), _ASKED])
     charts = [_draw(draw) for draw in draws.draws]
-    counted = [card(tally.words, _tally(tally)) for tally in draws.tallies]
-    rejected = note(
-        f"{draws.rejected:,} more paths were drawn and put aside: they came too close to something, or did not fit."
+    tallies = [card(tally.words, _tally(tally)) for tally in draws.tallies]
+    aside = (
+        f"{counted(draws.rejected, 'more path')} drawn and put aside: too close to something, or of no fit."
     )
-    return Html(said(draws.verdict) + shaded + cards(*charts) + cards(*counted) + rejected)
+    rejected = note(aside) if draws.rejected else ""
+    return Html(said(draws.verdict) + shaded + cards(*charts) + cards(*tallies, ragged=True) + text(rejected))
 
 
 def _draw(draw: Draw) -> Html:
-    unit = f" [{_UNITS.get(draw.unit, draw.unit)}]" if _UNITS.get(draw.unit, draw.unit) else ""
-    per = f"{draw.count:,} {draw.per}{'s' if draw.count != 1 else ''}"
+    unit = _UNITS.get(draw.unit, draw.unit)
+    behind = unit if unit in ("", "°") else f"\u00a0{unit}"
+    per = counted(draw.count, draw.per)
     if draw.asked is None:
         asked = "left to the climate of place and season"
     elif not draw.explicit:
         asked = "left open"
     elif draw.asked[0] == draw.asked[1]:
         least = draw.name == "clearance_m"
-        asked = f"asked: {'at least ' if least else ''}{draw.asked[0]:g}"
+        asked = f"asked: {'at least ' if least else ''}{draw.asked[0]:g}{behind}"
     else:
-        asked = f"asked: {draw.asked[0]:g} to {draw.asked[1]:g}".replace("-", "−")
+        asked = f"asked: {draw.asked[0]:g} to {draw.asked[1]:g}{behind}".replace("-", "−")
     outside = element("b", f" · {draw.outside} outside", class_="bad") if draw.outside else ""
     shade = draw.asked if draw.explicit and draw.asked and draw.asked[0] < draw.asked[1] else None
     chart = histogram(
         [bars(draw.histogram)],
-        f"{draw.words}{unit}",
+        f"{draw.words} [{unit}]" if unit else draw.words,
         asked=shade,
         ticks=_ticks(draw),
         up=f"% of the {draw.per}s",
@@ -79,10 +83,12 @@ def _draw(draw: Draw) -> Html:
     places = decimals(draw.high - draw.low)
     low, median, high = (plain(value, places) for value in (draw.low, draw.median, draw.high))
     words = (
-        f"{per}: {low} to {high}, median {median}" if low != high else f"{per}, all of them {draw.low:.3g}"
+        f"{per}: {low} to {high}{behind}, median {median}{behind}"
+        if low != high
+        else f"{per}{', all of them' if draw.count > 1 else ':'} {figure(draw.low).replace('-', '−')}{behind}"
     )
     if draw.chance is not None:
-        words += f"; even: p = {draw.chance:.2f}"
+        words += f"; even: p\u00a0=\u00a0{draw.chance:.2f}"
     if draw.name == "speed_mps" and draw.asked is not None and draw.low < draw.asked[0]:
         words += f"; {_SLOWER}"
     return card(
@@ -133,7 +139,7 @@ def contents(found: Contents, recipe: Mapping[str, Any]) -> Html:
             mark=mark,
             up="% of the pixels" if name in _OF_PIXELS else "% of the frames",
         )
-        charts.append(card(words, chart))
+        charts.append(card(words, *([key([_ASKED])] if asked else []), chart))
     return Html(said(found.verdict) + cards(*charts) + _classes(found))
 
 

@@ -10,12 +10,12 @@ import numpy as np
 from PIL import Image
 
 from scenegen.classes import CLASSES
-from scenegen_datasets.pages.axes import Frame, log_ticks, tick_words
 from scenegen_datasets.pages.charts import key
-from scenegen_datasets.pages.markup import Html, element, join, picture, text
+from scenegen_datasets.pages.markup import Html, element, join, picture
 from scenegen_datasets.pictures import colour
 from scenegen_datasets.pictures.ramp import Ramp, depth_ramp, thermal_ramp
 from scenegen_datasets.pictures.shot import Shot
+from scenegen_datasets.report.depth_bar import css, depth_bar, sky_key
 from scenegen_datasets.report.media import (
     FLIGHT_BYTES,
     Film,
@@ -27,6 +27,7 @@ from scenegen_datasets.report.media import (
 from scenegen_datasets.report.selection import Selection
 
 SHEET = """
+.moments{display:grid;grid-template-columns:repeat(var(--across),minmax(0,1fr));gap:0 24px}
 .moment{margin:22px 0 0}
 .moment .head,.flight .head{font-size:13px;margin:0 0 6px;color:var(--faint);max-width:none}
 .moment b,.flight b{color:var(--ink);font-weight:600;margin-right:10px}
@@ -38,23 +39,33 @@ font-variant-numeric:tabular-nums}
 .ramp i{flex:1;min-width:12px;height:7px;border-radius:2px;box-shadow:inset 0 0 0 1px var(--line)}
 .flight .under{display:grid;grid-template-columns:repeat(var(--layers),minmax(0,1fr));gap:2px 8px;margin-top:6px}
 .flight img{width:100%}
-.scales{display:flex;flex-wrap:wrap;gap:10px 34px;align-items:center;margin:14px 0 4px}
-.scales>div{min-width:min(330px,100%)}
-.scales .wheel{display:flex;gap:10px;align-items:center;min-width:0}
+.scales .wheel{display:flex;gap:10px;align-items:center}
 .scales .wheel img{width:44px;height:44px;border-radius:50%}
-@media(max-width:760px){.tiles{grid-template-columns:repeat(6,minmax(0,1fr))}.tiles>div{grid-column:span 3}
+@media(max-width:760px){.moments{grid-template-columns:minmax(0,1fr)}
+.tiles{grid-template-columns:repeat(6,minmax(0,1fr))}.tiles>div{grid-column:span 3}
 .tiles.five>div:nth-child(n+3){grid-column:span 2}}
-@media(max-width:520px){.flight .ramp,.tiles.five .small{font-size:10.5px}.ramp{gap:3px}}
-@media print{.moment,.flight{break-inside:avoid}}
+@media print,(max-width:760px){.ramp{flex-wrap:wrap;justify-content:space-between;gap:3px 6px;margin-right:0}
+.ramp i{order:-1;flex:0 0 100%}}
+@media print,(max-width:520px){.flight .ramp,.flight .small,.tiles .ramp,.tiles .small{font-size:10.5px}}
+@media print{.moment,.flight{break-inside:avoid}.moment{margin-top:14px}}
 """
+"""Of moments and flights."""
 
 _WHEEL_PX = 88
+_FEW_LAYERS = 2  # as many leave room for two moments side by side
 
 
 def moments(selection: Selection) -> Html:
     """One row of tiles for each chosen moment, below the legend."""
     span_m = common_range(selection.moments)
-    return join([_legend(selection.moments, span_m), *(_moment(shot, span_m) for shot in selection.moments)])
+    layers = max(len(shot.columns) for shot in selection.moments)
+    rows = element(
+        "div",
+        *(_moment(shot, span_m) for shot in selection.moments),
+        class_="moments",
+        style=f"--across:{2 if layers <= _FEW_LAYERS else 1}",
+    )
+    return join([_legend(selection.moments, span_m), rows])
 
 
 def flights(selection: Selection) -> Html:
@@ -115,51 +126,31 @@ def _moment(shot: Shot, span_m: tuple[float, float]) -> Html:
 
 
 def _head(name: str, shot: Shot) -> Html:
-    return element(
-        "p", element("b", name), " · ".join(shot.facts.replace("-", "−").split("   ")), class_="head"
-    )
+    facts = (fact.replace("-", "−").replace(" ", "\u00a0") for fact in shot.facts.split("   "))
+    return element("p", element("b", name), "\u00a0· ".join(facts), class_="head")
 
 
 def _legend(shots: Sequence[Shot], span_m: tuple[float, float]) -> Html:
     wheel = element(
-        "div", _wheel(), element("span", "flow: direction and length", class_="small"), class_="wheel"
+        "div",
+        _wheel(),
+        element("span", "flow to the next frame: direction and length", class_="small"),
+        class_="wheel",
     )
     parts = [
-        element("div", _depth_bar(*span_m)),
+        depth_bar(*span_m),
+        sky_key(),
         *([wheel] if any(s.flow is not None for s in shots) else []),
     ]
     seen = sorted({int(k) for shot in shots if shot.semantic is not None for k in np.unique(shot.semantic)})
-    classes = [
-        (_css(CLASSES[k].colour if k else colour.SKY_COLOUR), CLASSES[k].name.replace("_", " ")) for k in seen
-    ]
+    classes = [(css(CLASSES[k].colour), CLASSES[k].name.replace("_", " ")) for k in seen if k]
     how = element(
         "p",
-        "Thermal under the gain of a camera (plateau equalisation), frame by frame: the bar below each picture is its "
-        "scale. Depth has one scale for all.",
+        "Thermal is white hot, under the gain of a camera (plateau equalisation), frame by frame: the bar below each "
+        "picture is its scale, in brightness temperature. Depth has one scale for all moments.",
         class_="small",
     )
     return join([how, element("div", *parts, class_="scales"), key(classes) if classes else ""])
-
-
-def _depth_bar(low_m: float, high_m: float) -> Html:
-    """The colours of distances over a logarithmic axis; near is bright."""
-    frame = Frame(width=360, height=44, left=14, right=22, top=4, bottom=32)
-    scale = frame.across(low_m, high_m, log=True)
-    ramp = colour.colormap()[::-1]
-    stops = "".join(
-        f'<stop offset="{k / 16:.4f}" stop-color="{_css(tuple(map(int, ramp[min(16 * k, 255)])))}"/>'
-        for k in range(17)
-    )
-    width = frame.width - frame.left - frame.right
-    ticks = "".join(
-        f'<text class="x" x="{scale(v):.1f}" y="26">{text(tick_words(v))} m</text>'
-        for v in log_ticks(low_m, high_m)
-    )
-    return Html(
-        f'<svg viewBox="0 0 {frame.width} 32" role="img" aria-label="colours of depth">'
-        f'<defs><linearGradient id="depth">{stops}</linearGradient></defs>'
-        f'<rect x="{frame.left}" y="2" width="{width}" height="9" rx="2" fill="url(#depth)"/>{ticks}</svg>'
-    )
 
 
 def _wheel() -> Html:
@@ -169,7 +160,3 @@ def _wheel() -> Html:
     file = io.BytesIO()
     Image.fromarray(image).save(file, "WEBP", lossless=True)
     return picture(file.getvalue(), "webp", "colour wheel of flow", _WHEEL_PX, _WHEEL_PX)
-
-
-def _css(rgb: tuple[int, ...]) -> str:
-    return f"rgb({rgb[0]},{rgb[1]},{rgb[2]})"

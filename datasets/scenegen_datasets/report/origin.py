@@ -10,7 +10,7 @@ from typing import Any
 
 from scenegen.foundation import canonical
 from scenegen.foundation.errors import DatasetError
-from scenegen.foundation.words import counted
+from scenegen.foundation.words import counted, size
 from scenegen_datasets.info import DatasetInfo
 from scenegen_datasets.lock import fingerprint_id
 from scenegen_datasets.pages.charts import share_bar
@@ -107,11 +107,11 @@ def _facts(events: Events, clips: Events, cpu_s: float) -> Html:
     starts = [e for e in events if e["event"] == START]
     machine = starts[-1].get("machine", {}) if starts else {}
     peak = max((int(e.get("memory", {}).get("peak", 0)) for e in clips), default=0)
-    size = sum(int(e.get("bytes", 0)) for e in clips)
+    written = sum(int(e.get("bytes", 0)) for e in clips)
     facts = [
         (f"{cpu_s / len(clips):.1f} s", "CPU a clip"),
         (_span(_clock_s(events)), f"on the clock, {counted(len(starts), 'run')}"),
-        (f"{size / 1e9:.2f} GB", f"written, {len(clips):,} clips"),
+        (size(written), f"written, {counted(len(clips), 'clip')}"),
         (f"{peak:,} MiB" if peak else "–", "largest worker"),
         (
             str(machine.get("cpus", "–")),

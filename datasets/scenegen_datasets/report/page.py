@@ -6,11 +6,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from scenegen.foundation.atomic import make_directories, write_atomic
+from scenegen.foundation.words import counted, size
 from scenegen_datasets.audits.run import QUESTIONS, Audits, Watch, audit
 from scenegen_datasets.info import DatasetInfo, info
 from scenegen_datasets.pages.document import document
 from scenegen_datasets.pages.markup import Html, element
-from scenegen_datasets.report import drawn, gallery, judged, origin, seen, words
+from scenegen_datasets.report import depth_bar, drawn, gallery, judged, origin, seen, words
 from scenegen_datasets.report.selection import select
 from scenegen_datasets.source import open_source
 from scenegen_datasets.store import read_lock
@@ -85,7 +86,7 @@ def compose(root: Path, watch: Watch | None = None) -> tuple[str, Audits]:
         *sections,
         words.section("provenance", "Where it comes from", origin.provenance(found, lock)),
         words.section("cost", "What it cost", origin.cost(origin.read_log(root))),
-        sheet=words.SHEET + gallery.SHEET,
+        sheet=words.SHEET + depth_bar.SHEET + gallery.SHEET,
     )
     return page, audits
 
@@ -105,13 +106,15 @@ def _head(found: DatasetInfo, recipe: dict[str, object], audits: Audits) -> Html
     maps = recipe["map"]
     assert isinstance(maps, list | tuple)
     splits = ", ".join(f"{count:,} {name}" for name, count in found.splits.items() if count)
+    flights, worlds = counted(found.clips, "flight"), counted(found.worlds, "world")
     lead = (
-        f"{found.pairs:,} pairs of thermal and depth ({splits}) in {found.clips:,} flights through {found.worlds:,} "
-        f"worlds: {', '.join(map(str, maps))}. {camera['width_px']} × {camera['height_px']} px, "
-        f"{camera['hfov_deg']:g}° wide, {found.bytes / 1e9:.2f}\u00a0GB."
+        f"{counted(found.pairs, 'pair')} of thermal and depth ({splits}) in {flights} through {worlds}: "
+        f"{', '.join(map(str, maps))}. {camera['width_px']} × {camera['height_px']} px, "
+        f"{camera['hfov_deg']:g}° wide, {size(found.bytes)}."
     )
     state = "" if found.complete else " It is not complete."
-    judged_by = f"Audits look at {audits.steps:,} steps of {audits.clips:,} flights, always the same ones."
+    looked_at = f"{counted(audits.steps, 'step')} of {counted(audits.clips, 'flight')}"
+    judged_by = f"Audits look at {looked_at}, always the same ones."
     links = [
         element(
             "a",
@@ -123,7 +126,7 @@ def _head(found: DatasetInfo, recipe: dict[str, object], audits: Audits) -> Html
     ]
     return Html(
         element("h1", f"{found.name} {found.version}".strip())
-        + element("p", lead + state, class_="lead")
+        + element("p", words.tied(lead + state), class_="lead")
         + element("div", *links, class_="strip")
         + element("p", judged_by, class_="small")
     )

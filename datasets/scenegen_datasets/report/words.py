@@ -26,10 +26,12 @@ text-decoration:none;color:var(--ink);font-size:14px;line-height:1.4}
 .said{display:flex;gap:12px;margin:12px 0 4px}
 .said p{margin:0}
 .said p+p{margin-top:4px;color:var(--soft)}
-.figures{display:flex;gap:10px 34px;flex-wrap:wrap;margin:12px 0 4px}
+.ragged{align-items:start}
+@media print{.strip{grid-template-columns:repeat(3,1fr);gap:8px;margin-top:14px}
+.strip a{padding:8px 10px;font-size:11px}.strip small{font-size:10px}}
 """
 
-_UNITS = "%|px|mK|K|km|m|m/s|bit|s|GB|MB|MiB|h|°C"
+_UNITS = "%|px|mK|K|km|m|m/s|bit|s|TB|GB|MB|kB|MiB|h|°C"
 _BEFORE_UNIT = re.compile(rf"(?<=\d) (?=(?:{_UNITS})(?![\w/]))")
 
 
@@ -61,9 +63,10 @@ def card(title: str, *content: object) -> Html:
     return element("div", element("h3", title), *content, class_="card")
 
 
-def cards(*content: object, least_px: int = 330) -> Html:
-    """Cards side by side, as many as fit."""
-    return element("div", *content, class_="cards", style=f"--least:{least_px}px")
+def cards(*content: object, least_px: int = 330, ragged: bool = False) -> Html:
+    """Cards side by side, as many as fit; `ragged` leaves each as high as what it holds."""
+    kind = "cards ragged" if ragged else "cards"
+    return element("div", *content, class_=kind, style=f"--least:{least_px}px")
 
 
 def note(*content: object) -> Html:

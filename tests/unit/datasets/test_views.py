@@ -64,4 +64,5 @@ def test_words_above_pictures() -> None:
         "00:00 solar time",
     )
     assert (date(2, 9), latitude(-12.4), latitude(48.0)) == ("9 Feb", "12°S", "48°N")
+    assert latitude(-0.4) == latitude(0.4) == "0°"
     assert (sky(0.1), sky(0.5), sky(0.95), celsius(273.15)) == ("clear", "4/8 cloud", "overcast", "0 °C")

@@ -70,6 +70,12 @@ def test_columns_carry_their_kind() -> None:
     assert [cell.get("class") for cell in drawn.iter("td")] == [None, "number"]
 
 
+def test_heads_say_what_they_head_and_bars_need_none() -> None:
+    (head,) = ElementTree.fromstring(table(["a", Column("", "wide")], [["x", "y"]])).iter("thead")
+    assert [(cell.tag, cell.get("scope")) for cell in head[0]] == [("th", "col"), ("td", None)]
+    assert "<thead>" not in table(["", number("")], [["x", 3]])
+
+
 def test_a_table_with_a_short_row_is_refused() -> None:
     with pytest.raises(ValueError, match="zip"):
         table(["a", "b"], [["x"]])
@@ -101,6 +107,13 @@ def test_curves_go_through_their_points() -> None:
     chart = curves([Curve("a", (0.0, 2.0), (0.0, 50.0))], "x", (0.0, 2.0), (0.0, 100.0), frame=frame)
     (way,) = [e.get("d") for e in ElementTree.fromstring(chart).iter("path") if e.get("class") == "line"]
     assert way == "M40.0 160.0L290.0 85.0"
+
+
+def test_shares_side_by_side_are_told_to_those_who_cannot_see_them() -> None:
+    bar = ElementTree.fromstring(
+        stacked_bar([(0.75, "red", "hit: 3"), (0.25, "blue", "far: 1"), (0, "", "lost: 0")])
+    )
+    assert bar.get("role") == "img" and bar.get("aria-label") == "hit: 3; far: 1"
 
 
 def test_shares_stay_on_their_track() -> None:
