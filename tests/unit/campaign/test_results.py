@@ -135,6 +135,7 @@ def test_the_page_stands_alone_and_says_what_came_of_it(filled: Path) -> None:
     assert "50.0 %" in tags.words
     assert "5 collided" in tags.words
     assert html.count('<svg viewBox="0 0 900 900"') == 2
+    assert re.findall(r"<h3>(city 2 · \w+)", html) == ["city 2 · oracle", "city 2 · blind"]
     assert html.count("data:image/webp;base64,UklGRg==") == 1
     assert not re.search(r"(?:src|href)=[\"'](?!data:|#)", html)  # nothing is fetched from anywhere
 

@@ -7,10 +7,13 @@ from pathlib import Path
 
 from scenegen.foundation import canonical
 from scenegen.foundation.atomic import write_atomic
+from scenegen.foundation.words import counted
 from scenegen_datasets.pages.charts import key, share_bar
 from scenegen_datasets.pages.document import document
 from scenegen_datasets.pages.markup import Html, element, folded, join, text
 from scenegen_datasets.pages.tables import Column, number, table
+from scenegen_datasets.pictures.words import clock
+from scenegen_trainers.campaign.record import BatchRecord
 from scenegen_trainers.campaign.report import style
 from scenegen_trainers.campaign.report.charts import Mark, ends_bar, rate_bar, sweep_chart
 from scenegen_trainers.campaign.report.ink import END_COLOUR, END_WORDS, PILOT_COLOUR, interval, percent
@@ -163,10 +166,10 @@ def _cards(content: Sequence[Html]) -> Html:
 
 
 def _plans(campaign: Campaign, results: Results) -> Iterator[Html]:
-    """The map of each world with every pilot's flights over it."""
+    """The map of each world with every pilot's flights over it, one pilot beside the other."""
     store = CampaignStore(campaign.root)
     definitions: list[str] = []
-    cards: list[Html] = []
+    cards: dict[tuple[str, int], list[Html]] = {}
     for (point, map, pilot), found in results.flown.items():
         if point != BASE_POINT:
             continue
@@ -175,22 +178,23 @@ def _plans(campaign: Campaign, results: Results) -> Iterator[Html]:
             if plan is None:
                 continue
             name = f"{map}-{world}"
-            if not any(f'id="{name}"' in definition for definition in definitions):
+            if (map, world) not in cards:
                 definitions.append(picture_definition(name, plan[0]))
             frame = Frame(tuple(plan[1]["centre_m"]), plan[1]["height_m"], plan[1]["focal_px"])
             batches = [record for _, record in found if record.world == world]
             flights = [flight for record in batches for flight in record.flights]
-            hours = ", ".join(f"{record.hour:.1f}" for record in batches)
-            facts = element("span", f"{len(flights)} flights at {hours} h", class_="small")
-            head = element("h3", f"{map} {world} · {pilot} ", facts)
-            cards.append(_card(head, plan_svg(name, frame, flights)))
+            head = element("h3", f"{map} {world} · {pilot} ", _flown_when(batches, len(flights)))
+            cards.setdefault((map, world), []).append(_card(head, plan_svg(name, frame, flights)))
     if cards:
-        yield Html(
-            f'<svg width="0" height="0" style="position:absolute"><defs>{"".join(definitions)}</defs></svg>'
-        )
+        yield Html(f'<svg class="shelf" aria-hidden="true"><defs>{"".join(definitions)}</defs></svg>')
         yield element("h2", "Where they flew")
         yield _kinds()
-        yield _cards(cards)
+        yield _cards([card for of_world in cards.values() for card in of_world])
+
+
+def _flown_when(batches: Sequence[BatchRecord], flights: int) -> Html:
+    hours = ", ".join(clock(record.hour) for record in batches)
+    return element("span", f"{counted(flights, 'flight')} at {hours} solar time", class_="small")
 
 
 def _kinds() -> Html:
@@ -200,7 +204,8 @@ def _kinds() -> Html:
         f"{text(END_WORDS[kind])}</label>"
         for kind in KINDS
     )
-    return Html(f'<div class="key">{boxes}<span>● start &nbsp;○ goal &nbsp;✕ crash</span></div>')
+    marks = " &nbsp;".join(("● start", "○ goal", "✕ crash", "■ another end", "┄ way that was left"))
+    return Html(f'<div class="key">{boxes}<span>{marks}</span></div>')
 
 
 def _hits(lines: Sequence[Line], swept: bool) -> Html:
@@ -228,7 +233,7 @@ def _failed_flights(campaign: Campaign, results: Results) -> Html:
             pilot,
             point,
             flight.flight,
-            f"{record.hour:.1f}",
+            clock(record.hour),
             element("span", END_WORDS[flight.kind], style=f"color:{END_COLOUR[flight.kind]}"),
             flight.what.replace("_", " ") or flight.reason,
             f"{flight.time_s:.1f} s",

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 from shapely.geometry import LineString
 
+from scenegen.foundation.words import counted
 from scenegen_datasets.pages.markup import Html, text
 from scenegen_trainers.campaign.record import FlightRecord
 from scenegen_trainers.campaign.report.ink import END_COLOUR, END_WORDS
@@ -29,8 +30,11 @@ def plan_svg(picture_id: str, frame: Frame, flights: Sequence[FlightRecord]) -> 
     """
     drawn = sorted(flights, key=lambda flight: _ORDER.index(flight.kind))
     parts = [_flight(frame, flight) for flight in drawn]
+    crashed = sum(flight.kind == "collision" for flight in flights)
+    words = f"map of {picture_id} with the paths of {counted(len(flights), 'flight')}, {crashed} of which collided"
     return Html(
-        f'<svg viewBox="0 0 {SIDE_PX} {SIDE_PX}" class="plan"><use href="#{picture_id}"/>'
+        f'<svg viewBox="0 0 {SIDE_PX} {SIDE_PX}" class="plan" role="img" aria-label="{text(words)}">'
+        f'<use href="#{picture_id}"/>'
         f"{''.join(parts)}{_scale_bar(frame)}</svg>"
     )
 

@@ -16,7 +16,11 @@ svg.plan{border-radius:6px;background:#10131a;--ground:#10131a;--ink:#e4e8ef;--g
 .flight path.cross{stroke:var(--bad);stroke-width:2.6;opacity:1}
 .flight:hover path{stroke-width:3.6;opacity:1}
 .scale path{fill:none;stroke:var(--ink);stroke-width:1.6}
-.scale text{fill:var(--ink);font-size:16px;text-anchor:middle}
+.scale text{fill:var(--ink);font-size:20px;text-anchor:middle}
+svg.shelf{position:absolute;width:0;height:0}
+@media(max-width:640px){.flight path{stroke-width:3.6}.flight .ring{stroke-width:2.6}.scale text{font-size:34px}
+.scale path{stroke-width:2.6}}
+@media print{.key input{display:none}}
 """
 """Maps are dark by day as by night, so their paths keep the colours of the night."""
 
