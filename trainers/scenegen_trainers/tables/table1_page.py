@@ -139,6 +139,9 @@ def _verdict(found: Found) -> str:
     return f"{found.verdict} ({found.margin:+.3f})"
 
 
+_MANY = 8
+"""Columns that still fit in letters of full size."""
+
 _SCORE_HEAD = ("method", "w_L1", *HEADS, *(f"paper's {head.removesuffix(' [m]')}" for head in HEADS))
 _SECTIONS = (
     ("", "pooled"),
@@ -191,7 +194,8 @@ def as_html(table: Table1) -> str:
 
 def _html(head: Cells, rows: Sequence[Cells]) -> Html:
     columns = [Column(name, "name" if k == 0 else "number") for k, name in enumerate(head)]
-    return drawn(columns, [[_coloured(c, n) for c, n in zip(cells, head, strict=True)] for cells in rows])
+    cells = [[_coloured(c, n) for c, n in zip(row, head, strict=True)] for row in rows]
+    return drawn(columns, cells, dense=len(head) > _MANY)
 
 
 def _coloured(cell: str, column: str) -> Html:
