@@ -36,7 +36,7 @@ def depth_of(height_m: float) -> np.ndarray:
     return np.repeat(depth[:, None], columns, axis=1).astype(np.float32)
 
 
-def encoded(job: ClipJob, layers: tuple[str, ...]) -> Iterator[EncodedFrame]:
+def encoded(job: ClipJob, layers: tuple[str, ...], zoom: float = 1.0) -> Iterator[EncodedFrame]:
     rng = np.random.default_rng(job.ordinal)
     depth = depth_of(4.0 + 2.0 * (job.ordinal % 4))
     sky = np.isinf(depth)
@@ -56,10 +56,12 @@ def encoded(job: ClipJob, layers: tuple[str, ...]) -> Iterator[EncodedFrame]:
         )
         counts = 2000.0 + 9000.0 * warmth + rng.normal(0.0, 60.0, SHAPE)
         reading = Reading(counts.astype(np.uint16), saturated=0)
-        yield encode_frame(job.key(k), frame, reading, fakes.meta(k), layers)
+        meta = fakes.meta(k)
+        lens = dataclasses.replace(meta, K=np.diag([zoom, zoom, 1.0]) @ meta.K)
+        yield encode_frame(job.key(k), frame, reading, lens, layers)
 
 
-def make(root: Path, *, clips: int = CLIPS, layers: tuple[str, ...] = LAYERS) -> Path:
+def make(root: Path, *, clips: int = CLIPS, layers: tuple[str, ...] = LAYERS, zooms: bool = False) -> Path:
     root.mkdir(parents=True)
     plan = fakes.jobs(clips, PAIRS)
     recipe: dict[str, Any] = {
@@ -73,7 +75,8 @@ def make(root: Path, *, clips: int = CLIPS, layers: tuple[str, ...] = LAYERS) ->
         create_or_open(root, "map: city\n", lock)
         for job in plan:
             record = fakes.record(job, SHAPE)
-            commit_clip(root, record, encoded(job, layers), fingerprint=fakes.FINGERPRINT)
+            zoom = 1.5 if zooms and job.ordinal % 2 else 1.0
+            commit_clip(root, record, encoded(job, layers, zoom), fingerprint=fakes.FINGERPRINT)
         finish(root, plan)
     return root
 
@@ -88,3 +91,9 @@ def toy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def bare(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The same without true flow towards the previous frame, and without any split but train."""
     return make(tmp_path_factory.mktemp("bare") / "data", clips=2, layers=("thermal", "depth"))
+
+
+@pytest.fixture(scope="session")
+def zooming(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Every other clip through a longer lens."""
+    return make(tmp_path_factory.mktemp("zooming") / "data", layers=("thermal", "depth"), zooms=True)

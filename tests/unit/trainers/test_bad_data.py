@@ -151,6 +151,18 @@ def test_a_dataset_that_does_not_fit_is_refused(bare: Path, tmp_path: Path) -> N
         train(recipe(training={"noise": "redrawn"}), TrainingData.at(bare), tmp_path / "c", Machine())
 
 
+def test_frames_of_several_cameras_teach_nobody_and_judge_nobody(zooming: Path, tmp_path: Path) -> None:
+    data = TrainingData.at(zooming)
+    with pytest.raises(
+        InputError, match="holds frames of several cameras; a network learns and is judged with one"
+    ):
+        train(recipe(), data, tmp_path / "a", Machine())
+    assert not list((tmp_path / "a").glob("*.pt"))
+    checkpoint = Checkpoint(DepthNetwork(**recipe().network_config()).eval(), {"width_px": 32}, {})
+    with pytest.raises(InputError, match="several cameras"):
+        evaluate(checkpoint, data, thorough=False)
+
+
 @pytest.mark.parametrize(
     ("model", "keys", "message"),
     [

@@ -119,6 +119,7 @@ class _School:
     ) -> None:
         self.recipe, self.data, self.out, self.fabric = recipe, data, out, fabric
         self.precision, self.identity = precision, identity
+        self.camera = data.camera()
         knobs = recipe.training
         self.samples = data.samples("train", recipe, knobs.pairs, keep=knobs.workers == 0)
         self.judged = data.samples("val", recipe, knobs.judge_pairs, keep=True, stored=True)
@@ -215,7 +216,7 @@ class _School:
             "precision": self.precision,
         }
         network = self.learner.network.module
-        write_checkpoint(self.out / MODEL, network, self.recipe.network_config(), self.data.camera(), record)
+        write_checkpoint(self.out / MODEL, network, self.recipe.network_config(), self.camera, record)
 
 
 class _Planned:

@@ -65,10 +65,23 @@ class TrainingData:
         return Samples(self.root, split, recipe.inputs, pairs, keep, redrawn, embedded)
 
     def camera(self) -> dict[str, Any]:
-        """Size and field of view of its frames, as checkpoints name them."""
-        sample = PairDataset(self.root, layers=("thermal",))[0]
-        rows, columns = sample["thermal"].shape
-        return frames_of(columns, rows, float(sample["K"][0, 0]))
+        """Size and field of view of its frames, as checkpoints name them.
+
+        Raises
+        ------
+        InputError
+            If its frames are of several cameras: what is large in one is small in another, at the same distance.
+        """
+        pairs = PairDataset(self.root, layers=("thermal",))
+        try:
+            focal_px = float(pairs.intrinsics[0, 0])
+        except InputError:
+            raise InputError(
+                f"{self.root} holds frames of several cameras; a network learns and is judged with one: merge "
+                "datasets of one camera"
+            ) from None
+        rows, columns = pairs[0]["thermal"].shape
+        return frames_of(columns, rows, focal_px)
 
     def record(self) -> dict[str, str]:
         """What checkpoints and reports say about it."""
