@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
 from scenegen_cli.console import say, say_json
 from scenegen_cli.parse import parse
+
+if TYPE_CHECKING:
+    from scenegen_datasets.verify.strays import Stray
 
 
 @dataclass(frozen=True)
@@ -37,14 +40,19 @@ def run(arguments: Sequence[str]) -> int:
     found = clean(command.dataset, dry_run=True).strays
     if not command.json:
         for stray in found:
-            say(f"{printable(stray.path)}: {stray.reason.partition(';')[0]}")
+            say(f"{printable(stray.path)}: {_why(stray)}")
     if not command.dry_run and found:
         found = clean(command.dataset).strays
     removed = bool(found) and not command.dry_run
     if command.json:
-        strays = [{**asdict(stray), "path": printable(stray.path)} for stray in found]
+        strays = [{"path": printable(stray.path), "reason": _why(stray)} for stray in found]
         say_json({"strays": strays, "removed": removed})
         return 0
     what = "removed" if removed else "would be removed" if found else "nothing to remove"
     say(f"{len(found):,} {what}" if found else what)
     return 0
+
+
+def _why(stray: Stray) -> str:
+    """Without what `verify` says besides: that this command removes it."""
+    return stray.reason.partition(";")[0]

@@ -6,6 +6,7 @@ import shutil
 from pathlib import Path
 
 from scenegen.foundation.errors import InputError, NoSpaceError
+from scenegen.foundation.words import size
 
 
 def existing_part(root: Path) -> Path:
@@ -70,5 +71,5 @@ def check_room(root: Path, existing: Path, need_bytes: float, instead: str) -> N
     device = shutil.disk_usage(existing)
     if need_bytes > device.free and device.total > 0:  # a pseudo file system has no size at all
         raise NoSpaceError(
-            f"{root}: about {need_bytes / 1e9:.1f} GB are needed and {device.free / 1e9:.1f} GB are free; {instead}"
+            f"{root}: about {size(need_bytes)} are needed and {size(device.free)} are free; {instead}"
         )

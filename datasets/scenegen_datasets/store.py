@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -89,7 +90,7 @@ def check_output(root: Path, names: Collection[str] = OURS, lock: str = LOCK, ki
         With what stands in the way.
     """
     if root.is_symlink():
-        raise InputError(f"{root} is a symbolic link; give the directory itself")
+        raise InputError(f"{root} is a symbolic link; give the directory itself: {os.path.realpath(root)}")
     if not root.is_dir():
         raise InputError(f"{root} is not a directory")
     links = [name for name in names if (root / name).is_symlink()]

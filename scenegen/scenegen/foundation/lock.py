@@ -67,7 +67,9 @@ class DirectoryLock:
         except OSError as error:
             if is_full(error):
                 raise explained(error, self.path) from None
-            raise InputError(f"cannot lock {self.path.parent}: {error.strerror or error}") from None
+            raise InputError(
+                f"cannot lock {self.path.parent}: {error.strerror or error}; make it writable, or work on a copy"
+            ) from None
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             held = self._still_named(descriptor)

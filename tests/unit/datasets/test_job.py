@@ -43,7 +43,7 @@ def test_what_does_not_fit_is_refused(tmp_path: Path, monkeypatch: pytest.Monkey
         total, free = 10**9, 10**6
 
     monkeypatch.setattr("scenegen_datasets.place.shutil.disk_usage", lambda _: Usage)
-    with pytest.raises(NoSpaceError, match=r"about 0\.2 GB are needed and 0\.0 GB are free"):
+    with pytest.raises(NoSpaceError, match=r"about 1\d\d\.\d MB are needed and 1\.0 MB are free"):
         prepare(job(tmp_path / "new"))
     assert not (tmp_path / "new").exists()
 
