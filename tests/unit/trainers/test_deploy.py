@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -102,6 +103,12 @@ def test_cost_counts_multiplications(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "pix2pix" in capsys.readouterr().out
     pilot = OnnxDepth(tmp_path / "model.onnx", Camera.from_fov(48, 32, 90.0))
     assert pilot.name == "model"
+
+
+def test_a_graph_without_onnx_is_refused_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "onnx", None)
+    with pytest.raises(InputError, match=r"needs onnx: pip install 'thermal-scenegen\[onnx\]'$"):
+        onnx_graph(network("pix2pix", UNET))
 
 
 def test_a_budget_needs_no_training(capsys: pytest.CaptureFixture[str]) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 import warnings
 from collections.abc import Sequence
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,7 @@ import torch
 from jaxtyping import Float, UInt8
 from torch import Tensor, nn
 
+from scenegen.foundation.errors import InputError
 from scenegen_trainers.inputs.knobs import InputKnobs
 from scenegen_trainers.models.checkpoint import Checkpoint
 from scenegen_trainers.models.network import DepthNetwork
@@ -74,7 +76,13 @@ def takes_counts(inputs: InputKnobs) -> bool:
 
 
 def onnx_graph(checkpoint: Checkpoint) -> bytes:
-    """The graph of a network, for any number of frames of its camera's size."""
+    """The graph of a network, for any number of frames of its camera's size.
+
+    Raises
+    ------
+    InputError
+        If onnx is missing.
+    """
     network = checkpoint.network.cpu().eval()
     shape = (int(checkpoint.camera["height_px"]), int(checkpoint.camera["width_px"]))
     if takes_counts(network.inputs):
@@ -97,6 +105,8 @@ def example_inputs(checkpoint: Checkpoint, rng: np.random.Generator) -> dict[str
 
 
 def _exported(module: nn.Module, example: tuple[Tensor, ...], names: Sequence[str]) -> bytes:
+    if find_spec("onnx") is None:
+        raise InputError("writing an ONNX graph needs onnx: pip install 'thermal-scenegen[onnx]'")
     buffer = io.BytesIO()
     axes = {name: {0: "n"} for name in (*names, "depth_m")}
     with warnings.catch_warnings():
