@@ -27,12 +27,12 @@ def test_it_listens_on_the_loopback_address_and_answers_to_no_other_name(address
     assert re.fullmatch(r"http://127\.0\.0\.1:\d+/", address)
     asked = urllib.request.Request(address, headers={"Host": "evil.example"})
     with pytest.raises(urllib.error.HTTPError, match="400"):
-        urllib.request.urlopen(asked, timeout=60)
+        urllib.request.urlopen(asked, timeout=300)
 
 
 def test_a_picture_is_that_of_the_frame(address: str, finished_dataset: Path) -> None:
     with urllib.request.urlopen(
-        address + Gallery.address(1, 2, "semantic", Tone())[1:], timeout=60
+        address + Gallery.address(1, 2, "semantic", Tone())[1:], timeout=300
     ) as answer:
         data = np.frombuffer(answer.read(), np.uint8)
     picture = cv2.imdecode(data, cv2.IMREAD_COLOR)
@@ -48,7 +48,7 @@ def test_a_picture_that_does_not_exist_is_refused(address: str, wrong: str) -> N
     name = wrong.partition("=")[0]
     where = re.sub(rf"{name}=[^&]*", wrong, Gallery.address(0, 1, "depth", Tone()))
     with pytest.raises(urllib.error.HTTPError, match="404"):
-        urllib.request.urlopen(address + where[1:], timeout=60)
+        urllib.request.urlopen(address + where[1:], timeout=300)
 
 
 def test_no_dataset_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from viewing import CHROMIUM, looked_at, served
+from viewing import CHROMIUM, PATIENCE_MS, await_pictures, looked_at, served
 
 from scenegen_datasets.index import job_of
 from scenegen_datasets.source import open_source
@@ -51,7 +51,7 @@ def pick(page: Any, selector: Any, option: str) -> None:
     """Choose from a list, and wait until it has folded: for a moment after, two lists are in the page."""
     selector.click()
     page.get_by_role("option", name=option).first.click()
-    page.locator(".q-menu").wait_for(state="detached")
+    page.wait_for_function("!document.querySelector('.q-menu')")
 
 
 def move_to(page: Any, column: int, row: int, size: int = 64) -> dict[str, str]:
@@ -90,7 +90,7 @@ def test_keys_and_slider_go_one_frame_at_a_time(page: Any) -> None:
     at(page, "2 / 4")
     page.keyboard.press("ArrowRight")  # the slider has the focus and moves by itself
     at(page, "3 / 4")
-    page.wait_for_timeout(300)  # the slider tells its value once more, 50 ms after the last one
+    page.evaluate("new Promise((then) => setTimeout(then, 300))")  # by its own clock the slider tells twice
     page.keyboard.press("n")
     page.get_by_label("clip", exact=True).and_(page.locator("input[value*='clip 1']")).wait_for()
     at(page, "1 / 4")
@@ -128,17 +128,19 @@ def test_a_damaged_clip_is_named_and_the_next_is_shown(page: Any) -> None:
     page.keyboard.press("Escape")
     choose(page, "clip", "clip 3")
     fault.wait_for(state="hidden")
-    page.wait_for_function("document.querySelector('.picture img').naturalWidth > 0")
+    await_pictures(page)
 
 
 def test_a_narrow_screen_shows_everything(page: Any) -> None:
     phone = page.context.browser.new_page(viewport={"width": 390, "height": 844})
-    phone.set_default_timeout(60_000)
+    phone.set_default_timeout(PATIENCE_MS)
     phone.goto(page.url)
-    phone.wait_for_function("document.querySelector('.picture img')?.naturalWidth > 0")
+    await_pictures(phone)
     assert phone.evaluate("document.documentElement.scrollWidth") <= 390
     boxes = [picture.bounding_box() for picture in phone.locator(".picture img").all()]
     assert len(boxes) == 4 and all(box["width"] > 150 for box in boxes)
-    space = phone.locator(".space canvas").first.bounding_box()
+    drawn = phone.locator(".space canvas").first
+    drawn.wait_for()
+    space = drawn.bounding_box()
     assert space["width"] > 300 and space["y"] > boxes[-1]["y"]
     phone.close()

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import http.client
 import os
 import shutil
 import signal
 import subprocess
 import sys
+import time
 import urllib.error
 import urllib.request
 from collections.abc import Iterator
@@ -21,6 +23,18 @@ QUIET = (
 )
 
 
+PATIENCE_MS = 300_000
+"""A busy machine may take long; whoever waits goes on at once when what it waits for is there."""
+
+
+def await_pictures(page: Any) -> None:
+    """Wait until every picture of a page is there, so that nothing moves any more."""
+    page.wait_for_function(
+        "() => { const all = [...document.querySelectorAll('.picture img')];"
+        " return all.length > 0 && all.every((one) => one.naturalWidth > 0); }"
+    )
+
+
 @contextmanager
 def served(dataset: Path, *flags: str) -> Iterator[str]:
     """Address of the page of a dataset, served by the command itself; ends it as Ctrl-C does."""
@@ -31,34 +45,39 @@ def served(dataset: Path, *flags: str) -> Iterator[str]:
     with subprocess.Popen(command, text=True, env=shell, **pipes) as server:
         assert server.stdout is not None and server.stderr is not None
         where = server.stdout.readline().strip()
-        _await(server, where)
-        yield where
-        server.send_signal(signal.SIGINT)
-        assert server.wait(60) in (0, 130)
-        assert "Traceback" not in server.stderr.read()
+        try:
+            _await(server, where)
+            yield where
+        finally:  # whatever became of the test: the block would wait for the server
+            server.send_signal(signal.SIGINT)
+            _, said = server.communicate(timeout=300)
+        assert server.returncode in (0, 130)
+        assert "Traceback" not in said
 
 
 def _await(server: subprocess.Popen[str], where: str) -> None:
-    """Until the page answers; a request that is refused is repeated."""
+    """Until the page answers; a request that nobody hears is repeated."""
     while server.poll() is None:
         try:
-            with urllib.request.urlopen(where, timeout=60):
+            with urllib.request.urlopen(where, timeout=300):
                 return
-        except urllib.error.URLError:
-            subprocess.run(["sleep", "0.1"], check=True)
+        except urllib.error.HTTPError:
+            raise
+        except (OSError, http.client.HTTPException):
+            time.sleep(0.1)
     raise AssertionError(f"{where} does not answer: the command has ended")
 
 
 @contextmanager
 def looked_at(address: str, width: int = 1400, height: int = 1200) -> Iterator[Any]:
-    """A page of headless Chromium that shows an address and has its first picture."""
+    """A page of headless Chromium that shows an address and has its first pictures."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(QUIET))
         page = browser.new_page(viewport={"width": width, "height": height})
-        page.set_default_timeout(60_000)
+        page.set_default_timeout(PATIENCE_MS)
         page.goto(address)
-        page.wait_for_function("document.querySelector('.picture img')?.naturalWidth > 0")
+        await_pictures(page)
         yield page
         browser.close()
