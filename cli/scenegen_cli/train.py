@@ -26,7 +26,7 @@ class Train:
     model: str = "pix2pix-flow"
     """pix2pix (the paper's conventional method), pix2pix-flow (its proposed one), fastdepth or litemono."""
     profile: str = "ci"
-    """Size of the training: ci (minutes), small (an hour or so), paper (a GPU)."""
+    """Size of the training: ci (a minute of a core), small (three to ten), paper (a GPU)."""
     seed: int = 0
     """Seed of initial weights, order of samples, mirroring and dropout."""
     out: Path | None = None
