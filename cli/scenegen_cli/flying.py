@@ -25,12 +25,9 @@ def fly_meter(*, quiet: bool = False) -> Iterator[Told]:
     elif not sys.stderr.isatty():
         yield _plain()
     else:
-        from rich.console import Console
-        from rich.progress import BarColumn, TaskProgressColumn, TextColumn
-        from rich.progress import Progress as Bar
+        from scenegen_cli.bar import progress_bar
 
-        columns = (TextColumn("flying"), BarColumn(), TaskProgressColumn(), TextColumn("{task.fields[what]}"))
-        with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
+        with progress_bar() as bar:
             yield _shown(bar)
 
 
@@ -50,7 +47,7 @@ def _plain() -> Told:
 
 def _shown(bar: Any) -> Told:
     began = time.monotonic()
-    task = bar.add_task("flying", total=1, what="")
+    task = bar.add_task("flying", total=1, rate="", what="")
     last = ""
 
     def told(progress: Progress) -> None:

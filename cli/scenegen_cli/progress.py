@@ -31,18 +31,9 @@ class Meter:
 
     def __enter__(self) -> Meter:
         if not self._quiet and sys.stderr.isatty():
-            from rich.console import Console
-            from rich.progress import BarColumn, TaskProgressColumn, TextColumn
-            from rich.progress import Progress as RichProgress
+            from scenegen_cli.bar import progress_bar
 
-            columns = (
-                TextColumn("{task.description}"),
-                BarColumn(),
-                TaskProgressColumn(),
-                TextColumn("{task.fields[rate]}"),
-                TextColumn("{task.fields[what]}", style="dim"),
-            )
-            self._bar = RichProgress(*columns, console=Console(stderr=True), transient=True)
+            self._bar = progress_bar()
             self._bar.start()
         return self
 
