@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from scenegen_cli.console import say, say_json
+from scenegen.foundation.printable import printable
+from scenegen_cli.console import note, say, say_json
 from scenegen_cli.parse import parse
 
 if TYPE_CHECKING:
@@ -34,25 +35,35 @@ class Clean:
 def run(arguments: Sequence[str]) -> int:
     """Run the subcommand; returns the exit code."""
     command = parse(Clean, "clean", arguments)
-    from scenegen.foundation.printable import printable
+    from scenegen_cli.status import writer_of
     from scenegen_datasets.repair.clean import clean
 
+    told = _silent if command.json else _tell
     found = clean(command.dataset, dry_run=True).strays
-    if not command.json:
-        for stray in found:
-            say(f"{printable(stray.path)}: {_why(stray)}")
-    if not command.dry_run and found:
-        found = clean(command.dataset).strays
+    if command.dry_run:
+        told(found)
+        if found and writer_of(command.dataset):
+            note(f"{writer_of(command.dataset)} writes to it: what that works at is listed, too")
+    elif found:
+        found = clean(command.dataset, told=told).strays
     removed = bool(found) and not command.dry_run
     if command.json:
-        strays = [{"path": printable(stray.path), "reason": _why(stray)} for stray in found]
-        say_json({"strays": strays, "removed": removed})
+        say_json({"strays": [_plain(stray) for stray in found], "removed": removed})
         return 0
     what = "removed" if removed else "would be removed" if found else "nothing to remove"
     say(f"{len(found):,} {what}" if found else what)
     return 0
 
 
-def _why(stray: Stray) -> str:
-    """Without what `verify` says besides: that this command removes it."""
-    return stray.reason.partition(";")[0]
+def _plain(stray: Stray) -> dict[str, str]:
+    """Path and reason, without what `verify` says besides: that this command removes it."""
+    return {"path": printable(stray.path), "reason": stray.reason.partition(";")[0]}
+
+
+def _tell(strays: Sequence[Stray]) -> None:
+    for plain in map(_plain, strays):
+        say(f"{plain['path']}: {plain['reason']}")
+
+
+def _silent(_: Sequence[Stray]) -> None:
+    pass

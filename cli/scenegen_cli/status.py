@@ -58,7 +58,7 @@ def _facts(root: Path) -> dict[str, Any]:
     start = max((k for k, event in enumerate(events) if event.get("event") == "start"), default=0)
     quarantined = {e["clip"]: e["message"] for e in events[start:] if e.get("event") == "quarantine"}
     planned = found.pairs_planned or found.pairs
-    writer = _writer(root)
+    writer = writer_of(root)
     state = (
         "complete"
         if found.complete
@@ -102,7 +102,7 @@ def _event(line: bytes) -> dict[str, Any] | None:
     return event if sound else None
 
 
-def _writer(root: Path) -> str | None:
+def writer_of(root: Path) -> str | None:
     """Who holds the directory's lock; a dead process of this host does not count."""
     from scenegen_datasets.inside import read_inside
     from scenegen_datasets.store import WRITER_LOCK

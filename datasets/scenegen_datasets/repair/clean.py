@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,10 +32,20 @@ class Cleaned:
     removed: bool
 
 
-def clean(root: Path, *, dry_run: bool = False) -> Cleaned:
+def clean(
+    root: Path, *, dry_run: bool = False, told: Callable[[tuple[Stray, ...]], None] = lambda _: None
+) -> Cleaned:
     """Remove leftovers of killed writers, strange files and folders, links, pipes; nothing outside the directory.
 
     What is hidden at the top of the directory stays (version control, hubs), and so do pictures below ``preview/``.
+
+    Parameters
+    ----------
+    root : Path
+    dry_run : bool
+        Only look.
+    told : callable
+        Hears of what is about to be removed, while nobody else writes.
 
     Raises
     ------
@@ -50,6 +60,7 @@ def clean(root: Path, *, dry_run: bool = False) -> Cleaned:
     _refuse_links(root)
     with DirectoryLock(root):
         strays = strays_of(root)
+        told(strays)
         for stray in strays:
             remove_inside(root, stray.path)
     return Cleaned(strays, removed=True)

@@ -14,7 +14,6 @@ from scenegen.foundation.atomic import remove
 from scenegen.foundation.errors import DatasetError, InputError, NoSpaceError
 from scenegen.foundation.lock import DirectoryLock
 from scenegen.foundation.pool import Done, Failed, Pool, Task
-from scenegen_datasets.description import read_description
 from scenegen_datasets.finish import finish
 from scenegen_datasets.info import DatasetInfo
 from scenegen_datasets.job import ClipJob
@@ -28,6 +27,7 @@ from scenegen_datasets.sensing.camera import CameraKeys, NewCamera, new_camera
 from scenegen_datasets.sensing.film import Film, payload_of, setup_of
 from scenegen_datasets.source import open_source
 from scenegen_datasets.store import DATASET, LOCK, MANIFEST, clean, create_or_open, finished, read_lock
+from scenegen_datasets.versions.state import finished_description
 from scenegen_datasets.workers import ENVIRONMENT
 
 WORKER = "scenegen_datasets.sensing.film:worker"
@@ -148,14 +148,14 @@ def film_again(
 
 
 def _opened(source: Path) -> tuple[dict[str, Any], list[ClipJob]]:
-    lock = read_lock(source)
+    lock, told = read_lock(source), finished_description(source)
     stored = open_source(source, allow_partial=False)
     missing = [name for name in DEFAULT_LAYERS if name not in stored.layers]
     if missing:
         raise InputError(
             f"{source} holds no layer '{missing[0]}'; sensing again needs {', '.join(DEFAULT_LAYERS)}"
         )
-    if read_description(source / DATASET)["missing"]:
+    if told["missing"]:
         raise InputError(f"{source} lacks clips of its plan; make them first (scenegen repair)")
     return lock, [stored.record(clip).job for clip in range(len(stored.lines))]
 
