@@ -118,6 +118,7 @@ def test_gain_palette_and_layer_change_the_picture_and_its_words(page: Any) -> N
     choose(page, "colour of the points", "semantic")
     pick(page, page.locator(".pictures .q-select").first, "temperature")
     caption.get_by_text("kinetic").wait_for()
+    page.locator(".picture[role=img][aria-label^='temperature of frame']").wait_for()
 
 
 def test_a_damaged_clip_is_named_and_the_next_is_shown(page: Any) -> None:

@@ -109,12 +109,15 @@ class Page:
 
     def _build_panel(self, slot: int) -> None:
         with ui.element("div"):
-            ui.select(
+            layer = ui.select(
                 list(self._gallery.layers),
                 value=self._shown[slot],
                 on_change=lambda e: self._set_layer(slot, e.value),
-            ).props("dense borderless").mark(f"layer-{slot}")
+            )
+            layer.props(f'dense borderless role="group" aria-label="layer of picture {slot + 1}"')
+            layer.mark(f"layer-{slot}")
             picture = ui.interactive_image(events=["mousemove"], on_mouse=self._on_mouse).classes("picture")
+            picture.props('role="img"')
             self._pictures.append(picture.mark(f"picture-{slot}"))
             self._captions.append(ui.html("", sanitize=False).mark(f"caption-{slot}"))
 
@@ -200,6 +203,7 @@ class Page:
         layer = self._shown[slot]
         drawn = self._gallery.panel(*self._at, layer, self._tone)
         self._pictures[slot].set_source(self._gallery.address(*self._at, layer, self._tone))
+        self._pictures[slot].props(f'aria-label="{layer} of frame {self._at[1]}"')
         self._captions[slot].content = caption(drawn)
 
     def _read(self, still: Still) -> None:

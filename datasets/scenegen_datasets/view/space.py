@@ -31,6 +31,7 @@ class Space:
         ) as scene:
             self._scene = scene
         scene.classes("space").mark("space")
+        scene.props('role="img" aria-label="flight, camera and pixels of the frame in space"')
         self._origin: Float64[np.ndarray, "3"] = np.zeros(3)
         self._flight: list[Any] = []
         self._frame: list[Any] = []
