@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -13,12 +14,23 @@ from hostile.readers import READERS, readers_of
 from hostile.typed import check_said
 
 
+def reading_shows(folder: Path) -> bool:
+    """Whether this file system keeps the time of the last reading; some are mounted without."""
+    file = folder / "file"
+    file.write_text("x")
+    os.utime(file, (1e9, 1e9))
+    file.read_text()
+    return file.stat().st_atime > 1e9
+
+
 def test_each_mistake_is_told(pristine: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "PATIENCE_S", 3.0)
-    with Campaign(pristine, tmp_path, "hostile.careless") as campaign:
-        found = campaign.read(0, "nothing", ("info", *MISTAKES, "verify")).found
+    told = [name for name in MISTAKES if name != "reads outside" or reading_shows(tmp_path)]
+    with Campaign(pristine, tmp_path / "base", "hostile.careless") as campaign:
+        found = campaign.read(0, "nothing", ("info", *told, "verify")).found
     assert {name: found[name] for name in ("info", "verify")} == {"info": "sound", "verify": "sound"}
-    for name, (_, said) in MISTAKES.items():
+    for name in told:
+        said = MISTAKES[name][1]
         assert found[name].startswith("WRONG") and said in found[name], (name, found[name])
 
 

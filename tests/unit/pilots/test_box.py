@@ -53,12 +53,12 @@ def test_a_death_costs_the_flights_that_were_asked_about(monkeypatch: pytest.Mon
     assert isinstance(pilot, DepthPilot) and isinstance(pilot.source, BoxedSource)
     assert (pilot.name, pilot.needs) == ("crashing", frozenset())
     pilot.begin(np.arange(4), 0)
-    answer = ask(pilot, seen(0.0), 60.0)
+    answer = ask(pilot, seen(0.0), 600.0)
     assert answer.failed == {} and answer.depth_m is not None
     assert np.array_equal(answer.depth_m, crashing_pilot.Crashing().estimate(seen(0.0)))
-    answer = ask(pilot, seen(1.0), 60.0)
+    answer = ask(pilot, seen(1.0), 600.0)
     assert answer.failed == {2: "raised RuntimeError: its process was killed by SIGSEGV"}
-    without = ask(pilot, seen(2.0).rows(np.array([0, 1, 3])), 60.0)
+    without = ask(pilot, seen(2.0).rows(np.array([0, 1, 3])), 600.0)
     assert without.failed == {}
     pilot.source.close()
 
