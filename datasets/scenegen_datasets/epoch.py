@@ -118,13 +118,15 @@ class Epoch:
         InputError
             If it was taken of another dataset or other settings: the continuation would not be exact.
         """
+        if not {*self._settings, "epoch", "position"} <= state.keys():
+            raise InputError("this is no position that `state_dict` gave; save one, or start a new pass")
         of_any = (
             ("rank",) if self._settings["even"] else ()
         )  # checkpoints hold the position of the first rank
         for name, value in self._settings.items():
-            if name not in of_any and state.get(name) != value:
+            if name not in of_any and state[name] != value:
                 raise InputError(
-                    f"the position was saved with {name} {state.get(name)}, this order has {value}; "
+                    f"the position was saved with {name} {state[name]}, this order has {value}; "
                     "use the same settings, or start a new pass"
                 )
         self.epoch, self.position = int(state["epoch"]), int(state["position"])

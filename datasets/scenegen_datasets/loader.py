@@ -70,7 +70,7 @@ class PairDataset:
     Raises
     ------
     InputError
-        If there is no dataset, or it does not hold what is asked for.
+        If there is no dataset, it does not hold what is asked for, or no clip is as long as a sequence.
 
     Notes
     -----
@@ -107,9 +107,13 @@ class PairDataset:
         self.root = plain_root(path)
         self.split = split
         asked = (layers,) if isinstance(layers, str) else tuple(layers)
+        for name in asked:
+            if name not in LAYERS and name != PREVIOUS:
+                raise InputError(f"unknown layer '{name}'{nearest(str(name), (*LAYERS, PREVIOUS))}")
         self._stored = check_layers(name for name in asked if name != PREVIOUS)
         self._previous = PREVIOUS in asked
         self.layers = (*self._stored, PREVIOUS) if self._previous else self._stored
+        self._skip = frame_skip
         self._steps = np.arange(seq_length) * (frame_skip + 1)
         self._stride = seq_stride
         self._allow_partial = allow_partial
@@ -147,7 +151,13 @@ class PairDataset:
         pairs = first["frames"].astype(np.int64) - 1
         counts = np.maximum((pairs - span) // self._stride + 1, 0)
         if self.split is not None:
-            counts[first["split"] != SPLITS.index(self.split)] = 0
+            other = first["split"] != SPLITS.index(self.split)
+            counts[other] = pairs[other] = 0
+        if pairs.any() and not counts.any():
+            raise InputError(
+                f"a sequence of {len(self._steps)} (seq_length) with frame_skip {self._skip} takes {span} pairs, "
+                f"and the longest clip of {self.split or 'all splits'} in {self.root} has {pairs.max()}"
+            )
         self._ends = np.cumsum(counts)
 
     @property
@@ -201,6 +211,8 @@ class PairDataset:
             Past the end.
         CorruptFrameError
             If the stored bytes are not what was written.
+        DatasetError
+            If what is behind a URL cannot be reached now.
         """
         if isinstance(index, slice):
             return Part(self, range(len(self))[index])

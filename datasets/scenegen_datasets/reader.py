@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from scenegen.foundation.errors import CorruptFrameError, DatasetError
+from scenegen.foundation.errors import CorruptFrameError
 from scenegen_datasets.job import ClipJob
 from scenegen_datasets.layers import Layer, max_member_bytes, member_field
 from scenegen_datasets.pixels import decode_member
@@ -44,6 +44,8 @@ class ShardReader:
         ------
         CorruptFrameError
             If the shard is missing or short, or the member's bytes are not those that were written.
+        DatasetError
+            If what is behind a URL cannot be reached now.
         """
         return self.frame(row, job, {member: layers})
 
@@ -68,7 +70,7 @@ class ShardReader:
             try:
                 found |= decode_member(member, layers, data, shape)
             except CorruptFrameError as error:
-                raise CorruptFrameError(f"{_where(row, job, member)}: {error}") from None
+                raise CorruptFrameError(f"{self._where(row, job, member)}: {error}") from None
         return found
 
     def stored(self, row: np.void, job: ClipJob, member: str) -> bytes:
@@ -92,19 +94,16 @@ class ShardReader:
         for (member, _), (offset, size) in zip(names, wanted, strict=True):
             if size > limit or offset > min(int(row["shard_size"]), _MAX_SHARD_BYTES) - size:
                 raise CorruptFrameError(
-                    f"{_where(row, job, member)}: larger than its shard or its image allows"
+                    f"{self._where(row, job, member)}: larger than its shard or its image allows"
                 )
         try:
             pieces = self._files.spans(job.shard, wanted)
         except OSError as error:
-            raise CorruptFrameError(f"{job.shard}: {error.strerror or error}") from None
-        except DatasetError as error:  # names the shard
-            raise CorruptFrameError(str(error)) from None
+            raise CorruptFrameError(f"{self._files.where}/{job.shard}: {error.strerror or error}") from None
         for (member, name), (_, size), data in zip(names, wanted, pieces, strict=True):
             if len(data) != size or zlib.crc32(data) != int(row[f"{name}_crc32"]):
-                raise CorruptFrameError(f"{_where(row, job, member)}: damaged; run `scenegen verify`")
+                raise CorruptFrameError(f"{self._where(row, job, member)}: damaged; run `scenegen verify`")
         return pieces
 
-
-def _where(row: np.void, job: ClipJob, member: str) -> str:
-    return f"{job.shard}: {job.key(int(row['frame']))}.{member}"
+    def _where(self, row: np.void, job: ClipJob, member: str) -> str:
+        return f"{self._files.where}/{job.shard}: {job.key(int(row['frame']))}.{member}"

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.errors import InputError
-from scenegen_datasets.adapters.torch import PairLoader, collate
+from scenegen_datasets.adapters.torch import PairLoader, check_options, collate
 from scenegen_datasets.loader import PairDataset
 from scenegen_datasets.sample import Sample
 
@@ -53,6 +53,7 @@ class PairModule(LightningDataModule):  # type: ignore[misc]
         **options: Any,
     ) -> None:
         super().__init__()
+        check_options(options, PairDataset, PairModule)
         self._path, self._options = path, {"layers": tuple(layers), **options}
         self._loading: dict[str, Any] = {
             "batch_size": batch_size,

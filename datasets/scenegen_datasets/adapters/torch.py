@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from inspect import signature
 from typing import Any
 
 import numpy as np
 
-from scenegen.foundation.errors import InputError
+from scenegen.foundation.errors import InputError, nearest
 from scenegen_datasets.epoch import Epoch
 from scenegen_datasets.loader import PairDataset
 from scenegen_datasets.sample import Sample
@@ -19,6 +20,20 @@ except ImportError:
     raise InputError("batches of tensors need PyTorch: pip install 'thermal-scenegen[torch]'") from None
 
 Batch = dict[str, Any]
+
+
+def check_options(given: Iterable[str], *takers: Callable[..., Any]) -> None:
+    """Refuse names that nobody takes where they are written, not where they would arrive.
+
+    Raises
+    ------
+    InputError
+        With the nearest name that one of the takers has.
+    """
+    known = {name for taker in takers for name in signature(taker).parameters} - {"options", "order"}
+    for name in given:
+        if name not in known:
+            raise InputError(f"no option is called '{name}'{nearest(name, known)}")
 
 
 def collate(samples: Sequence[Mapping[str, Any]]) -> Batch:
@@ -124,6 +139,7 @@ class PairLoader:
     ) -> None:
         if batch_size < 1:
             raise InputError(f"batch_size is {batch_size}; it must be at least 1")
+        check_options(order, Epoch, PairLoader)
         self.epoch = Epoch(pairs, **order)
         self._batches = _Batches(self.epoch, batch_size, drop_last)
         self._loader = DataLoader(

@@ -8,6 +8,7 @@ from collections import OrderedDict
 from collections.abc import Sequence
 from pathlib import Path
 
+from scenegen.foundation.errors import CorruptFrameError, DatasetError
 from scenegen_datasets.inside import open_inside
 from scenegen_datasets.remote.files import Span
 from scenegen_datasets.seal import read_bounded
@@ -56,10 +57,16 @@ class DiskFiles:
             if file is None:
                 if len(self._open) >= _MAX_OPEN:
                     self._open.popitem(last=False)
-                file = self._open[path] = _Opened(self._root, path)
+                file = self._open[path] = self._open_anew(path)
             else:
                 self._open.move_to_end(path)
             return file
+
+    def _open_anew(self, path: str) -> _Opened:
+        try:
+            return _Opened(self._root, path)
+        except DatasetError as error:
+            raise CorruptFrameError(f"{self._root}/{error}; run `scenegen verify`") from None
 
 
 class _Opened:

@@ -47,6 +47,8 @@ class Files(Protocol):
         ------
         OSError
             If there is no such file.
+        DatasetError
+            If it cannot be reached; or, a `CorruptFrameError`, is no plain file.
         """
         ...
 

@@ -141,6 +141,9 @@ def test_a_position_of_other_settings_is_refused() -> None:
     uneven = Epoch(CLIPS, 9, rank=1, ranks=2, even=False)
     with pytest.raises(InputError, match="saved with rank 0"):
         uneven.load_state_dict(Epoch(CLIPS, 9, ranks=2, even=False).state_dict())
+    for nothing in ({}, {"epoch": 1, "position": 0}):
+        with pytest.raises(InputError, match="no position that `state_dict` gave"):
+            Epoch(CLIPS, 9).load_state_dict(nothing)
     with pytest.raises(InputError, match="rank 2 of 2"):
         Epoch(CLIPS, rank=2, ranks=2)
     with pytest.raises(InputError, match="clips_at_once"):
