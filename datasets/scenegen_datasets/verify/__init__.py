@@ -30,7 +30,8 @@ def verify(
     ----------
     root : Path
     jobs : int
-        Worker processes; 1 works in this one.
+        Worker processes; 1 works in this one. A script that asks for more does so below ``if __name__ == "__main__":``,
+        as the processes import it.
     quick : bool
         Sizes and metadata only: finds what is missing or short, not flipped bits in pixels.
     progress : callable, optional
