@@ -6,6 +6,8 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
+from scenegen.foundation.words import counted
+
 
 class Section(BaseModel):
     """Base of all recipe sections: frozen, unknown keys refused, no NaN or infinity anywhere."""
@@ -31,7 +33,7 @@ def _span(value: Any) -> Any:
         return (value, value)
     if isinstance(value, list | tuple) and len(value) == 2:
         return tuple(value)
-    given = f"{len(value)} values" if isinstance(value, list | tuple) else f"{value!r:.60}"
+    given = counted(len(value), "value") if isinstance(value, list | tuple) else f"{value!r:.60}"
     raise ValueError(f"expected a number, or two for a range, not {given}")
 
 
