@@ -65,6 +65,11 @@ def _tell(done: Repaired) -> None:
         note("recipe.yaml was lost: it holds the recipe with every default now, not what was asked")
     for clip, reason in done.failed:
         note(f"not repaired: {clip}: {reason}")
+    if done.shared:
+        note(
+            f"{counted(len(done.shared), 'shard')} put right ({done.shared[0]}) had hard links, as `scenegen merge` "
+            "makes them: the file of the other datasets is what it was; repair those, too"
+        )
     for finding in done.after.findings[:SHOWN]:
         note(f"still: {finding}")
     state = "sound again" if done.after.ok else f"{counted(len(done.after.findings), 'finding')} left"

@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 import small
 
+import hostile_scenes
 from scenegen_cli.main import main
 from scenegen_datasets.receipt import read_receipt, receipt_paths, shard_of
 
@@ -40,6 +41,34 @@ def test_a_merged_dataset_is_repaired_to_the_byte(
     (whole / "recipe.yaml").unlink()
     assert main(["repair", str(whole), "--jobs", "1"]) == 0
     assert "1 clip rendered again" in capsys.readouterr().out
+    assert small.tree(whole) == before
+
+
+def test_an_own_scene_in_a_merged_dataset_is_repaired_with_its_file(
+    finished_dataset: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The lock knows what the scene is; where it lies now, the user says. Clips of the city do without."""
+    scene, whole = tmp_path / "yard.glb", tmp_path / "whole"
+    scene.write_bytes(hostile_scenes.sound(".glb"))
+    scene.with_suffix(".yaml").write_text("up_axis: z\ndefault_material: granite\n")
+    flags = ("--map", str(scene), "--flight.height-m", "6", "12", "--no-verify")
+    assert main(small.render(tmp_path / "yard", pairs=4, jobs=1, more=flags)) == 0
+    assert (
+        main(["merge", str(whole), str(finished_dataset), str(tmp_path / "yard"), "--copy", "--jobs", "1"])
+        == 0
+    )
+    before = small.tree(whole)
+    there = tmp_path / "elsewhere" / "farm.glb"
+    there.parent.mkdir()
+    scene.rename(there)
+    scene.with_suffix(".yaml").rename(there.with_suffix(".yaml"))
+    (whole / "shards/train/yard-00000/000.tar").unlink()
+    capsys.readouterr()
+    assert main(["repair", str(whole), "--jobs", "1"]) == 2
+    said = capsys.readouterr().err.strip()
+    assert "takes the scene yard" in said and "--own-files FILE" in said and "\n" not in said
+    assert {k: v for k, v in before.items() if "yard-00000/000.tar" not in k} == small.tree(whole)
+    assert main(["repair", str(whole), "--jobs", "1", "--own-files", str(there)]) == 0
     assert small.tree(whole) == before
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -46,6 +47,8 @@ class Repaired:
         Clips that were rendered again and took their places.
     failed : tuple of (str, str)
         Clips that could not be made, or came out differently, and why; they were left as they were.
+    shared : tuple of str
+        Of the remade ones, those whose broken shard has other names still: other datasets are merged of it.
     """
 
     before: VerifyReport
@@ -54,6 +57,7 @@ class Repaired:
     rewritten: bool
     remade: tuple[str, ...]
     failed: tuple[tuple[str, str], ...]
+    shared: tuple[str, ...] = ()
 
 
 def repair(
@@ -96,12 +100,14 @@ def repair(
         found = survey(root, lock, checks)
         _refuse_growing(root, lock, found)
         rewritten = rewrite_recipe(root, lock)
+        linked = {clip.name for clip in found.broken if _has_other_names(root / clip.shard)}
         remade, failed = (
             _remake(root, lock, found, processes, told, tuple(own_files)) if found.broken else ([], {})
         )
         _derive(root, found, failed, before)
         after = examine(root, processes, progress=verified)[0]
-    return Repaired(before, after, healed, rewritten, tuple(remade), tuple(sorted(failed.items())))
+    shared = tuple(name for name in remade if name in linked)
+    return Repaired(before, after, healed, rewritten, tuple(remade), tuple(sorted(failed.items())), shared)
 
 
 def _sound_lock(root: Path) -> dict[str, Any]:
@@ -190,6 +196,15 @@ def _take_place(root: Path, scratch: Path, clip: ClipJob, expected: str | None) 
         (scratch / path).replace(place)
         sync_directory(place.parent)
     return ""
+
+
+def _has_other_names(path: Path) -> bool:
+    """Whether a plain file is a hard link, as `scenegen_datasets.versions.merge` makes them."""
+    try:
+        found = path.lstat()
+    except OSError:
+        return False
+    return stat.S_ISREG(found.st_mode) and found.st_nlink > 1
 
 
 def _make_way(root: Path, path: str) -> None:

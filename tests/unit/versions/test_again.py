@@ -74,6 +74,19 @@ def test_every_kind_of_damage_to_a_merged_dataset_is_repaired_to_the_byte(
     assert fakes.tree(root) == fakes.tree(whole)
 
 
+def test_other_datasets_that_share_what_was_broken_are_thought_of(
+    whole: Path, tmp_path: Path, studio: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A hard link that was damaged is damaged under all its names; a repair puts one of them right."""
+    root = shutil.copytree(whole, tmp_path / "all")
+    last = receipt_paths(root)[-1]
+    (tmp_path / "elsewhere.tar").hardlink_to(root / shard_of(last))
+    for shared in (True, False):
+        flip(root, last)
+        assert main(["repair", str(root), "--jobs", "1"]) == 0
+        assert ("1 shard put right (field-00001-001) had hard links" in capsys.readouterr().err) == shared
+
+
 def test_frames_of_a_merged_dataset_are_rendered_again_and_compared(
     fakes: ModuleType, whole: Path, studio: list[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
