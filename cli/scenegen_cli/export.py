@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -12,8 +11,8 @@ from typing import Annotated
 import tyro
 
 from scenegen.foundation.words import counted
-from scenegen_cli.console import note, say, say_json, size
-from scenegen_cli.leaving import TerminatedError
+from scenegen_cli.console import say, say_json, size
+from scenegen_cli.leaving import resumable
 from scenegen_cli.parse import parse
 from scenegen_datasets.exports.options import Options
 from scenegen_datasets.exports.registry import FORMATS
@@ -69,14 +68,11 @@ def run(arguments: Sequence[str]) -> int:
         encoding=command.encoding,
     )
     request = Request(dataset, out, command.to, options, command.split, command.map)
-    try:
-        with Meter(quiet=command.json) as meter:
-            outcome = export(request, processes(command.jobs), meter.exported)
-    except (KeyboardInterrupt, TerminatedError):
-        note(
-            f"interrupted; whole clips are kept. Continue with: {shlex.join(['scenegen', 'export', *arguments])}"
-        )
-        raise
+    with (
+        resumable("whole clips are kept", ["scenegen", "export", *arguments]),
+        Meter(quiet=command.json) as meter,
+    ):
+        outcome = export(request, processes(command.jobs), meter.exported)
     if command.json:
         say_json({**asdict(outcome), "root": str(outcome.root)})
         return 0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +12,7 @@ from scenegen.foundation.words import counted
 from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
 from scenegen_cli.helping import keys_help
-from scenegen_cli.leaving import TerminatedError
+from scenegen_cli.leaving import resumable
 from scenegen_cli.parse import parse, split_recipe_flags
 from scenegen_datasets.recipe import Recipe
 from scenegen_datasets.resolve import Source, leaves
@@ -212,16 +211,12 @@ def _fly(campaign: Campaign, command: Fly, again: Sequence[str]) -> int:
 
     if not command.json:
         note(f"{campaign.root}: {_plan_in_words(campaign)}")
-    try:
-        with fly_meter(quiet=command.json) as told:
-            failed = fly(campaign, told)
-            results = gather(campaign)
-            files = [*write(campaign, results), write_page(campaign, results)]
-            for flight in command.replay:
-                files += replay(campaign, flight)
-    except (KeyboardInterrupt, TerminatedError):
-        note(f"interrupted; finished batches are kept. Continue with: {shlex.join(again)}")
-        raise
+    with resumable("finished batches are kept", again), fly_meter(quiet=command.json) as told:
+        failed = fly(campaign, told)
+        results = gather(campaign)
+        files = [*write(campaign, results), write_page(campaign, results)]
+        for flight in command.replay:
+            files += replay(campaign, flight)
     if command.json:
         say_json({**to_json(campaign, results), "failed": failed, "files": [str(file) for file in files]})
     else:

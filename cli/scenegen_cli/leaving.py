@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from types import FrameType
+
+from scenegen_cli.console import note
 
 INTERRUPTED, TERMINATED = 130, 143
 """Exit codes after SIGINT and SIGTERM."""
@@ -14,6 +18,26 @@ class HelpShown(Exception):  # noqa: N818 - not an error
 
 class TerminatedError(BaseException):
     """SIGTERM was received. Like KeyboardInterrupt, nothing but the front door catches it."""
+
+
+@contextmanager
+def resumable(kept: str, again: Sequence[str]) -> Iterator[None]:
+    """Say how to go on if the block is interrupted.
+
+    Parameters
+    ----------
+    kept : str
+        What is not lost, such as "finished clips are kept".
+    again : sequence of str
+        The command that goes on.
+    """
+    try:
+        yield
+    except (KeyboardInterrupt, TerminatedError):
+        import shlex
+
+        note(f"interrupted; {kept}. Continue with: {shlex.join(again)}")
+        raise
 
 
 def terminate(_signal: int, _frame: FrameType | None) -> None:

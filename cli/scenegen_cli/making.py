@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shlex
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -12,7 +11,7 @@ from typing import Any
 from scenegen.foundation.errors import InputError
 from scenegen.foundation.words import counted
 from scenegen_cli.console import note, say, say_json, size
-from scenegen_cli.leaving import TerminatedError
+from scenegen_cli.leaving import resumable
 from scenegen_cli.progress import Meter
 from scenegen_datasets.probe import render_fingerprint
 from scenegen_datasets.render_job import Job, prepare
@@ -61,13 +60,9 @@ def make(job: Job, again: Sequence[str], *, check_after: bool, as_json: bool) ->
     prepare(job)
     if not as_json:
         note(f"{job.root}: {plan_in_words(job)}")
-    try:
-        with Meter(quiet=as_json) as meter:
-            outcome = run(job, render_fingerprint(), meter.frames)
-            report = verify(job.root, job.processes, progress=meter.verified) if check_after else None
-    except (KeyboardInterrupt, TerminatedError):
-        note(f"interrupted; finished clips are kept. Continue with: {shlex.join(again)}")
-        raise
+    with resumable("finished clips are kept", again), Meter(quiet=as_json) as meter:
+        outcome = run(job, render_fingerprint(), meter.frames)
+        report = verify(job.root, job.processes, progress=meter.verified) if check_after else None
     if as_json:
         say_json(_facts(job, outcome, report))
     else:

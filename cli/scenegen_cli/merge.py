@@ -11,6 +11,7 @@ import tyro
 
 from scenegen.foundation.words import counted
 from scenegen_cli.console import say, say_json, size
+from scenegen_cli.leaving import resumable
 from scenegen_cli.parse import parse
 
 if TYPE_CHECKING:
@@ -49,7 +50,10 @@ def run(arguments: Sequence[str]) -> int:
     from scenegen_datasets.versions.merge import merge
 
     workers = processes(command.jobs)
-    with Meter(quiet=command.json) as meter:
+    with (
+        resumable("finished clips are kept", ["scenegen", "merge", *arguments]),
+        Meter(quiet=command.json) as meter,
+    ):
         merged = merge(command.out, command.parts, copy=command.copy, progress=meter.merged)
         report = None if command.no_verify else proven(command.out, workers, meter, new=merged.new)
     if command.json:

@@ -10,6 +10,7 @@ from typing import Annotated
 import tyro
 
 from scenegen_cli.console import say, say_json, size
+from scenegen_cli.leaving import resumable
 from scenegen_cli.parse import parse
 
 
@@ -41,7 +42,10 @@ def run(arguments: Sequence[str]) -> int:
     from scenegen_datasets.push import push
 
     own_bars = command.url.startswith("hf://")  # of the Hub's client
-    with Meter(quiet=command.json or own_bars) as meter:
+    with (
+        resumable("what was sent is kept", ["scenegen", "push", *arguments]),
+        Meter(quiet=command.json or own_bars) as meter,
+    ):
         done = push(
             command.dataset, command.url, private=command.private, quick=command.quick, told=meter.pushed
         )

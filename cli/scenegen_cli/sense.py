@@ -12,6 +12,7 @@ import tyro
 from scenegen.foundation.errors import InputError
 from scenegen.foundation.words import counted
 from scenegen_cli.console import say, say_json, size
+from scenegen_cli.leaving import resumable
 from scenegen_cli.parse import parse, parse_size, split_recipe_flags
 from scenegen_datasets.resolve import leaves
 
@@ -60,7 +61,10 @@ def run(arguments: Sequence[str]) -> int:
         width, height = parse_size(command.size)
         flags["camera"] = {**flags.get("camera", {}), "width_px": width, "height_px": height}
     workers = processes(command.jobs)
-    with Meter(quiet=command.json) as meter:
+    with (
+        resumable("finished clips are kept", ["scenegen", "sense", *arguments]),
+        Meter(quiet=command.json) as meter,
+    ):
         done = sense_dataset(
             command.dataset,
             command.out,

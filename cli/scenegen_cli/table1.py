@@ -10,6 +10,7 @@ from typing import Any, Literal
 from scenegen.foundation.errors import InputError
 from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
+from scenegen_cli.leaving import resumable
 from scenegen_cli.parse import parse
 from scenegen_cli.teaching import need_torch, recipe_help, training_flags
 
@@ -72,7 +73,8 @@ def run(arguments: Sequence[str]) -> int:
         accelerator=command.accelerator,
         precision=command.precision,
     )
-    result = run_table1(job, lambda name, said: None if command.json else note(f"{name}  {said}"))
+    with resumable("what is finished is kept", ["scenegen", "table1", *arguments]):
+        result = run_table1(job, lambda name, said: None if command.json else note(f"{name}  {said}"))
     paths = write_table1(result, job.out)
     if command.json:
         say_json(as_json(result))

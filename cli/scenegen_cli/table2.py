@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from scenegen.foundation.errors import InputError, nearest
 from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
-from scenegen_cli.leaving import TerminatedError
+from scenegen_cli.leaving import resumable
 from scenegen_cli.making import processes
 from scenegen_cli.parse import parse, split_recipe_flags
 from scenegen_cli.teaching import need_torch
@@ -81,11 +80,8 @@ def run(arguments: Sequence[str]) -> int:
     need_torch()
     out = command.out or Path(f"table2-{command.profile}")
     again = ["scenegen", "table2", *arguments, *([] if command.out else ["--out", str(out)])]
-    try:
+    with resumable("what is finished is kept", again):
         return _fly(prepare(command, flags, out), command)
-    except (KeyboardInterrupt, TerminatedError):
-        note(f"interrupted; what is finished is kept. Continue with: {shlex.join(again)}")
-        raise
 
 
 def prepare(command: Table2, flags: Mapping[str, Any], out: Path) -> Table2Job:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -10,6 +11,7 @@ from typing import Literal
 from scenegen.foundation.errors import InputError
 from scenegen_cli.asking import sources
 from scenegen_cli.console import note, say, say_json
+from scenegen_cli.leaving import resumable
 from scenegen_cli.parse import parse
 from scenegen_cli.teaching import Steps, need_torch, recipe_help, training_flags
 
@@ -73,9 +75,11 @@ def run(arguments: Sequence[str]) -> int:
     out = command.out or Path(f"{command.model}-seed{command.seed}")
     speaks = is_first_process()
     steps = Steps(command.model, quiet=command.json or not speaks)
-    model = train(
-        recipe, TrainingData.at(command.data), out, machine, lambda t: steps(t.step, t.steps, t.losses)
-    )
+    again = resumable("what was learned up to the last state.pt is kept", ["scenegen", "train", *arguments])
+    with again if speaks else nullcontext():
+        model = train(
+            recipe, TrainingData.at(command.data), out, machine, lambda t: steps(t.step, t.steps, t.losses)
+        )
     if not speaks:
         return 0
     if command.json:
