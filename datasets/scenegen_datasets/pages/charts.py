@@ -12,7 +12,7 @@ from scenegen_datasets.pages.sheet import SERIES
 SMALL = Frame()
 """Of a chart in one of three columns."""
 
-LARGE = Frame(width=540, height=280, left=54, bottom=42)
+LARGE = Frame(width=540, height=280, left=54, right=16, bottom=42)
 """Of a chart in one of two columns."""
 
 

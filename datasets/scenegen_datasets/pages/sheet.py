@@ -33,9 +33,10 @@ p{margin:8px 0;max-width:78ch}
 p.lead{color:var(--faint);margin:8px 0 0;max-width:none}
 a{color:var(--link)}
 :focus-visible{outline:2px solid var(--link);outline-offset:2px}
-nav{position:sticky;top:0;z-index:1;background:var(--ground);border-bottom:1px solid var(--line);margin:22px -4px 0;
-display:flex;gap:4px 20px;overflow-x:auto;padding:10px 4px;font-size:13.5px;white-space:nowrap}
+nav{position:sticky;top:0;z-index:1;background:var(--ground);border-bottom:1px solid var(--line);margin:22px 0 0;
+display:flex;gap:4px 20px;overflow-x:auto;padding:10px 0;font-size:13.5px;white-space:nowrap}
 nav a{color:var(--soft);text-decoration:none}
+nav a:focus-visible{outline-offset:-1px}
 nav a:hover{color:var(--link);text-decoration:underline}
 [id]{scroll-margin-top:58px}
 code,pre{font:12.5px/1.5 ui-monospace,SFMono-Regular,Menlo,Consolas,monospace;overflow-wrap:anywhere}
