@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -43,7 +44,7 @@ def exit_code(root: Path, report: VerifyReport | None, *, new: bool) -> int:
     remedy = (
         f"{root} counts as unfinished: `scenegen repair` what it was made of, then run the same command again"
         if new
-        else f"`scenegen repair {root}` puts it right"
+        else f"`scenegen repair {shlex.quote(str(root))}` puts it right"
     )
     note(f"verify found: {report.findings[0]}; {remedy}")
     return 1
