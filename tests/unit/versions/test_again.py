@@ -74,6 +74,17 @@ def test_every_kind_of_damage_to_a_merged_dataset_is_repaired_to_the_byte(
     assert fakes.tree(root) == fakes.tree(whole)
 
 
+def test_an_unfinished_whole_is_for_the_command_that_makes_it(
+    whole: Path, tmp_path: Path, studio: list[str]
+) -> None:
+    root = shutil.copytree(whole, tmp_path / "all")
+    for name in ("dataset.json", "MANIFEST.sha256", shard_of(receipt_paths(root)[0])):
+        (root / name).unlink()
+    with pytest.raises(InputError, match="1 clip missing or broken; the same merge command goes on with it"):
+        repair(root, 1)
+    assert studio == []
+
+
 def test_other_datasets_that_share_what_was_broken_are_thought_of(
     whole: Path, tmp_path: Path, studio: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
