@@ -95,4 +95,5 @@ class Meter:
         """Rate over the whole run, worlds included, and what is left at that rate, once that means something."""
         if done < 0.1 * total or seconds <= 0.0:
             return ""
-        return f"{done / seconds:.1f} frames/s  {span((total - done) * seconds / done)} left"
+        rate = done / seconds
+        return f"{rate:.{1 if rate >= 1.0 else 2}f} frames/s  {span((total - done) / rate)} left"
