@@ -30,7 +30,10 @@ OFFSET_BAR_PX, WIDTH_BAR_PX = 0.5, 4.0
 
 _CONTRAST_K, _REFERENCE_K = 2.0, 290.0
 _MIXED = (0.1, 0.9)
-_FEWEST = 50
+_FEWEST, _FEW = (
+    50,
+    400,
+)  # to read a profile from; to call a shift a fault: few may all be of one crown, or one turn
 _PER_FRAME = 400
 
 
@@ -134,7 +137,7 @@ class EdgeAudit:
         share = min(0.5 * mixed * touching, 1.0)  # a crossing touches one pixel on either side
         clean = parts.get("clean")
         return EdgeMap(
-            verdict=_verdict(offsets, width, mixed, share),
+            verdict=_verdict(offsets, width, mixed, share, len(both)),
             edges=len(both),
             silhouette_share=touching,
             mixed_pixels=mixed,
@@ -211,7 +214,9 @@ def _width(profile: Float64[np.ndarray, "places"]) -> float | None:
     return None if first is None or last is None else last - first
 
 
-def _verdict(offsets: Sequence[float | None], width: float | None, mixed: float, share: float) -> Verdict:
+def _verdict(
+    offsets: Sequence[float | None], width: float | None, mixed: float, share: float, edges: int
+) -> Verdict:
     known = [abs(offset) for offset in offsets if offset is not None]
     aside = max(known, default=0.0)
     wide = "not clearly" if width is None else f"{width:.1f} px"
@@ -220,6 +225,8 @@ def _verdict(offsets: Sequence[float | None], width: float | None, mixed: float,
         f"pixels; the edge is {wide} wide (10 to 90 %) and lies {aside:.2f} px from that of depth. "
         "A loss that trusts every pixel there asks for sharper edges than the camera has."
     )
+    if aside > OFFSET_BAR_PX and edges < _FEW:
+        return Verdict("note", f"Heat lies beside depth, but at {edges} silhouettes only.", words)
     if aside > OFFSET_BAR_PX:
         return Verdict("fault", "Heat and depth do not lie on top of each other.", words)
     if width is not None and width > WIDTH_BAR_PX:

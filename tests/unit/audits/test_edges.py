@@ -27,9 +27,10 @@ def posts(staged: ModuleType, blur_px: float = 0.0, shift_px: int = 0, warm: boo
     )
 
 
-def judged(staged: ModuleType, still: Still) -> EdgeMap:
+def judged(staged: ModuleType, still: Still, times: int = 1) -> EdgeMap:
     audit = EdgeAudit(np.random.default_rng(2))
-    audit.see(staged.step(still, staged.wall().next))
+    for _ in range(times):
+        audit.see(staged.step(still, staged.wall().next))
     return audit.result()
 
 
@@ -61,9 +62,11 @@ def test_heat_beside_its_depth_is_a_fault(staged: ModuleType) -> None:
     depth = np.where(step, 60.0, 5.0).astype(np.float32)
     heat = np.where(np.roll(step, 1, axis=1) & step, 4000, 5200).astype(np.uint16)  # one pixel late
     aside = replace(still, depth=depth, counts=heat, instance=(step + 1).astype(np.uint32))
-    found = judged(staged, aside)
+    found = judged(staged, aside, times=8)
     assert found.offset_right_px == pytest.approx(1.0, abs=1e-9)
-    assert found.verdict.level == "fault"
+    assert found.edges >= 400 and found.verdict.level == "fault"
+    few = judged(staged, aside)
+    assert few.edges < 400 and few.verdict.level == "note"  # a handful may all be of one thing
 
 
 def test_level_edges_are_read_too(staged: ModuleType) -> None:
