@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from scenegen.foundation.errors import DatasetError
+from scenegen_datasets.store import CLIPS
 from scenegen_render.sensor.knobs import SensorKnobs
 from scenegen_render.sensor.scale import MAX_COUNT, CountScale
 
@@ -38,7 +40,19 @@ def scale_of(facts: Mapping[str, Any]) -> CountScale:
     ----------
     facts : mapping
         The clip's line of ``clips.jsonl`` (`scenegen_datasets.source.Source.facts`).
+
+    Raises
+    ------
+    DatasetError
+        If it does not say, or says what no sensor has.
     """
-    sensor = facts["sensor"]
-    low_um, high_um = facts["band_um"]
-    return CountScale(sensor["low_K"], sensor["high_K"], (low_um, high_um), sensor["linear_in"])
+    try:
+        said, (low_um, high_um) = facts["sensor"], facts["band_um"]
+        knobs = SensorKnobs(scale_K=(said["low_K"], said["high_K"]), linear_in=said["linear_in"])
+        if not 0.0 < low_um < high_um:
+            raise ValueError("a band from its long to its short end")
+    except (KeyError, ValueError):
+        raise DatasetError(
+            f"{CLIPS}: a clip does not say what its counts mean; run `scenegen verify`"
+        ) from None
+    return CountScale.of(knobs, (low_um, high_um))
