@@ -10,7 +10,6 @@ import signal
 import socket
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -124,10 +123,8 @@ def test_a_claim_is_taken_over_only_from_the_provably_dead(
         with pytest.raises(InputError, match="being written by"):
             DirectoryLock(tmp_path).__enter__()
     claim.write_text(json.dumps({"host": socket.gethostname(), "pid": dead.pid}))
-    start = time.monotonic()
     with DirectoryLock(tmp_path):
         assert json.loads(claim.read_text())["pid"] == os.getpid()
-    assert time.monotonic() - start < 5
     assert not claim.exists()
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
-import time
 from pathlib import Path
 from types import ModuleType
 
@@ -79,17 +78,13 @@ def test_no_descriptor_is_leaked(fakes: ModuleType, pristine: Path) -> None:
     assert len(list(Path("/proc/self/fd").iterdir())) <= before + 1
 
 
-def test_an_index_of_a_million_rows_opens_at_once(tmp_path: Path) -> None:
+def test_an_index_of_a_million_rows_is_mapped_not_read(tmp_path: Path) -> None:
     path = tmp_path / "index.npy"
     rows = np.zeros(10_000, ROW)
     rows["frame"] = np.arange(10_000) % 65
     write_index(path, (rows for _ in range(100)), 1_000_000)
-    costs = []
-    for _ in range(5):
-        start = time.process_time()
-        mapped = open_index(path, 1_000_000)
-        costs.append(time.process_time() - start)
-    assert min(costs) < 0.02  # to read it all takes far longer
+    mapped = open_index(path, 1_000_000)
+    assert isinstance(mapped, np.memmap) and not mapped.flags.writeable
     assert int(mapped[999_999]["frame"]) == rows["frame"][-1]
     np.testing.assert_array_equal(np.load(path, mmap_mode="r")[-5:]["frame"], rows["frame"][-5:])
     with pytest.raises(DatasetError, match="not an index of 999999 frames"):
