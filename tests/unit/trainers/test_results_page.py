@@ -73,7 +73,7 @@ def test_flights_of_table_2_are_those_that_were_counted() -> None:
     rows = dict(table["maps"])
     rows |= {"mean of all 4": table["all_maps"], "without city": table["without_city"]}
     for name, row in rows.items():
-        (line,) = (line for line in page.splitlines() if line.startswith(f"| {name} | ") and "open" in line)
+        line = next(line for line in page.splitlines() if line.startswith(f"| {name} | "))
         for rate in row["collisions"].values():
             counts = f"({rate['count']}/{rate['of']}; {100 * rate['low']:.1f}-{100 * rate['high']:.1f})"
             assert counts in line
@@ -84,3 +84,21 @@ def test_flights_of_table_2_are_those_that_were_counted() -> None:
             str(line["ends"][kind]["count"]) for kind in ("goal", "collision", "timeout", "pilot")
         )
         assert f"| {line['map']} | {line['pilot']} | {line['flights']} | {ends} | " in page
+
+
+def test_flights_of_the_other_network_are_those_that_were_counted() -> None:
+    page = (RESULTS / "table2.md").read_text(encoding="utf-8")
+    table = json.loads((RESULTS / "table2_litemono.json").read_text(encoding="utf-8"))
+    for row in table["others"]["litemono"]:
+        rate, cells = row["collisions"], []
+        for method in ("conventional", "proposed"):
+            found = row["against"][method]
+            paired, margin = found["mcnemar"], row["mean"] - mean_of(table, row["maps"], method)
+            said = f"{paired['p']:.2g} ({paired['first_only']} : {paired['second_only']})"
+            cells.append(f"{100 * margin:+.1f} ({found['other_is']}), {said}")
+        counts = f"({rate['count']}/{rate['of']}; {100 * rate['low']:.1f}-{100 * rate['high']:.1f})"
+        assert f"| litemono | {100 * row['mean']:.1f} % {counts} | {' | '.join(cells)} |" in page
+
+
+def mean_of(table: dict[str, Any], maps: list[str], method: str) -> float:
+    return fmean(table["maps"][name]["collisions"][method]["share"] for name in maps)
