@@ -15,9 +15,11 @@ from pathlib import Path
 import pytest
 
 from scenegen.foundation.errors import CorruptFrameError, InputError, NoSpaceError
+from scenegen_datasets.description import read_description, sealed_description
 from scenegen_datasets.exports import engine
 from scenegen_datasets.exports.marker import SUMMARY
 from scenegen_datasets.exports.plan import Request
+from scenegen_datasets.store import DATASET
 
 Run = Callable[..., engine.Outcome]
 Tree = Callable[[Path], dict[str, str]]
@@ -45,6 +47,23 @@ def test_the_licence_travels(run: Run, tmp_path: Path) -> None:
     pytest.importorskip("pyarrow")
     run("hf", "hub", splits=("val",))
     assert (tmp_path / "hub/README.md").read_text().startswith("---\nlicense: cc-by-4.0\nconfigs:\n")
+
+
+@pytest.mark.parametrize("to", ["kitti", "hf", "zarr", "hdf5", "rerun"])
+def test_a_dataset_that_states_no_licence_has_the_usual_one(
+    run: Run, make_dataset: Make, tmp_path: Path, to: str
+) -> None:
+    old = make_dataset(tmp_path / "old", clips=1)
+    said = read_description(old / DATASET)
+    sums = said.pop("sums")
+    del said["license"]
+    (old / DATASET).write_bytes(sealed_description(said, sums))
+    for package in {"hf": ("pyarrow",), "zarr": ("zarr",), "hdf5": ("h5py",), "rerun": ("rerun",)}.get(
+        to, ()
+    ):
+        pytest.importorskip(package)
+    run(to, dataset=old)
+    assert json.loads((tmp_path / "out" / SUMMARY).read_text())["license"] == "CC-BY-4.0"
 
 
 def test_what_is_gone_or_cut_is_written_again(run: Run, tree: Tree, tmp_path: Path) -> None:

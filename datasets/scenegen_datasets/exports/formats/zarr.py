@@ -48,17 +48,7 @@ def finish(stage: Stage, clips: Sequence[Exported], description: Mapping[str, An
     import zarr
 
     root = zarr.open_group(str(stage.path(STORE)), mode="w", zarr_format=3)
-    about = (
-        "name",
-        "version",
-        "license",
-        "content_id",
-        "conventions",
-        "grid",
-        "band_um",
-        "sensor",
-        "classes",
-    )
+    about = ("name", "version", "content_id", "conventions", "grid", "band_um", "sensor", "classes")
     root.attrs.update({"license": licence_of(description), **{name: description[name] for name in about}})
     for split in sorted({clip.split for clip in clips}):
         group = root.create_group(split)
