@@ -74,7 +74,7 @@ class Canvas:
 
     def depth_bar(self, x: int, y: int, width_px: int, low_m: float, high_m: float) -> None:
         """Colour bar of distances with logarithmic ticks below and a swatch for the sky."""
-        sky = math.ceil(self.width_of("sky", 11)) + 20
+        sky = math.ceil(self.width_of("sky", 11)) + 25
         length = width_px - sky
         ramp = np.repeat(colour.colormap()[::-1][None], 8, axis=0)
         self.picture(x, y + 1, np.asarray(cv2.resize(ramp, (length, 8), interpolation=cv2.INTER_LINEAR)))

@@ -59,7 +59,7 @@ def _head(
         if name == "thermal":
             canvas.text(_x(column) + 62, 74, "white hot", 11, FAINT)
         elif name == "depth":
-            canvas.depth_bar(_x(column) + 52, 64, TILE_PX - 52, *span_m)
+            canvas.depth_bar(_x(column) + 52, 64, TILE_PX - 72, *span_m)
         elif name == "flow":
             canvas.flow_wheel(_x(column) + 42, 54, 30)
 
