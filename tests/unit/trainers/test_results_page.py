@@ -88,7 +88,7 @@ def test_flights_of_table_2_are_those_that_were_counted() -> None:
 
 def test_flights_of_the_other_network_are_those_that_were_counted() -> None:
     page = (RESULTS / "table2.md").read_text(encoding="utf-8")
-    table = json.loads((RESULTS / "table2_litemono.json").read_text(encoding="utf-8"))
+    table = json.loads((RESULTS / "table2.json").read_text(encoding="utf-8"))
     for row in table["others"]["litemono"]:
         rate, cells = row["collisions"], []
         for method in ("conventional", "proposed"):
