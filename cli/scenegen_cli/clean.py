@@ -42,8 +42,8 @@ def run(arguments: Sequence[str]) -> int:
     found = clean(command.dataset, dry_run=True).strays
     if command.dry_run:
         told(found)
-        if found and writer_of(command.dataset):
-            note(f"{writer_of(command.dataset)} writes to it: what that works at is listed, too")
+        if found and (writer := writer_of(command.dataset)):
+            note(f"{writer} writes to it: what that works at is listed, too")
     elif found:
         found = clean(command.dataset, told=told).strays
     removed = bool(found) and not command.dry_run

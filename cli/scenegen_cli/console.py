@@ -11,7 +11,6 @@ from collections.abc import Iterable, Sequence
 from typing import Any, TextIO
 
 from scenegen.foundation.printable import printable_json, printable_lines
-from scenegen.foundation.words import size as size
 
 
 def say(text: str) -> None:

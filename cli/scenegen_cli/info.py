@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from scenegen.foundation.words import counted
-from scenegen_cli.console import say, say_json, size, table
+from scenegen.foundation.words import counted, size
+from scenegen_cli.console import say, say_json, table
 from scenegen_cli.parse import parse
 
 if TYPE_CHECKING:

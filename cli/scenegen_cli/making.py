@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from scenegen.foundation.errors import InputError
-from scenegen.foundation.words import counted
-from scenegen_cli.console import note, say, say_json, size
+from scenegen.foundation.words import counted, size
+from scenegen_cli.console import note, say, say_json
 from scenegen_cli.leaving import resumable
 from scenegen_cli.progress import Meter
 from scenegen_datasets.probe import render_fingerprint

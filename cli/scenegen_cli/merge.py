@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
-from scenegen.foundation.words import counted
-from scenegen_cli.console import say, say_json, size
+from scenegen.foundation.words import counted, size
+from scenegen_cli.console import say, say_json
 from scenegen_cli.leaving import resumable
 from scenegen_cli.parse import parse
 

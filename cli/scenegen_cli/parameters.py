@@ -42,6 +42,11 @@ class Parameter:
     required: bool
     several: bool
 
+    @property
+    def flag(self) -> str:
+        """Its name on the command line, without what follows: ``--jobs``."""
+        return self.label.partition(" ")[0]
+
 
 def parameters(command: type) -> list[Parameter]:
     """What a command takes, in the order of its fields.

@@ -158,7 +158,7 @@ def _unknown(word: str, known: Sequence[str]) -> str:
 
 
 def _flags(takes: Sequence[Parameter]) -> list[str]:
-    return [one.label.partition(" ")[0] for one in takes if not one.positional]
+    return [one.flag for one in takes if not one.positional]
 
 
 def _refuse_unknown(arguments: Sequence[str], takes: Sequence[Parameter]) -> None:
@@ -172,7 +172,7 @@ def _refuse_unknown(arguments: Sequence[str], takes: Sequence[Parameter]) -> Non
 
 def _refuse_empty(arguments: Sequence[str], takes: Sequence[Parameter]) -> None:
     """A flag that takes all words up to the next flag takes at least one."""
-    greedy = {one.label.partition(" ")[0] for one in takes if one.several and not one.positional}
+    greedy = {one.flag for one in takes if one.several and not one.positional}
     for word, after in pairwise([*arguments, "--"]):
         if word in greedy and after.startswith("--"):
             raise InputError(f"{word}: a value is missing")

@@ -7,7 +7,8 @@ import time
 from types import TracebackType
 from typing import Any
 
-from scenegen_cli.console import note, size, span
+from scenegen.foundation.words import size
+from scenegen_cli.console import note, span
 from scenegen_datasets.run import Progress
 
 PLAIN_EVERY_S = 15.0

@@ -9,7 +9,8 @@ from typing import Annotated
 
 import tyro
 
-from scenegen_cli.console import say, say_json, size
+from scenegen.foundation.words import size
+from scenegen_cli.console import say, say_json
 from scenegen_cli.leaving import resumable
 from scenegen_cli.parse import parse
 

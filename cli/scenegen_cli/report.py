@@ -9,8 +9,9 @@ from typing import Annotated
 
 import tyro
 
+from scenegen.foundation.words import size
 from scenegen_cli.audit import say_verdicts
-from scenegen_cli.console import say, say_json, size
+from scenegen_cli.console import say, say_json
 from scenegen_cli.parse import parse
 
 

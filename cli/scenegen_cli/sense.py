@@ -10,8 +10,8 @@ from typing import Annotated
 import tyro
 
 from scenegen.foundation.errors import InputError
-from scenegen.foundation.words import counted
-from scenegen_cli.console import say, say_json, size
+from scenegen.foundation.words import counted, size
+from scenegen_cli.console import say, say_json
 from scenegen_cli.leaving import resumable
 from scenegen_cli.parse import parse, parse_size, split_recipe_flags
 from scenegen_datasets.resolve import leaves

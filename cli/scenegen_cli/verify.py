@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Annotated
 import tyro
 
 from scenegen.foundation.errors import InputError
-from scenegen.foundation.words import counted
-from scenegen_cli.console import note, say, say_json, size
+from scenegen.foundation.words import counted, size
+from scenegen_cli.console import note, say, say_json
 from scenegen_cli.parse import parse
 
 if TYPE_CHECKING:

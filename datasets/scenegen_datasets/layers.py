@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from scenegen.foundation.errors import InputError, nearest
@@ -143,18 +143,24 @@ def member_field(suffix: str) -> str:
     return suffix.partition(".")[0]
 
 
-def check_layers(layers: Iterable[str]) -> tuple[str, ...]:
+def check_layers(layers: Iterable[str], besides: Sequence[str] = ()) -> tuple[str, ...]:
     """Return the layers in storage order, each once.
+
+    Parameters
+    ----------
+    layers : iterable of str
+    besides : sequence of str
+        Names that may be asked for, too, but are not stored: they are left out of the answer.
 
     Raises
     ------
     InputError
-        For a name that is not a layer.
+        For a name that is neither.
     """
     asked = tuple(layers)
     for name in asked:
-        if name not in LAYERS:
-            raise InputError(f"unknown layer '{name}'{nearest(name, LAYERS)}")
+        if name not in LAYERS and name not in besides:
+            raise InputError(f"unknown layer '{name}'{nearest(str(name), (*LAYERS, *besides))}")
     return tuple(name for name in LAYERS if name in asked)
 
 

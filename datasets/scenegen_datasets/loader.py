@@ -107,10 +107,7 @@ class PairDataset:
         self.root = plain_root(path)
         self.split = split
         asked = (layers,) if isinstance(layers, str) else tuple(layers)
-        for name in asked:
-            if name not in LAYERS and name != PREVIOUS:
-                raise InputError(f"unknown layer '{name}'{nearest(str(name), (*LAYERS, PREVIOUS))}")
-        self._stored = check_layers(name for name in asked if name != PREVIOUS)
+        self._stored = check_layers(asked, besides=(PREVIOUS,))
         self._previous = PREVIOUS in asked
         self.layers = (*self._stored, PREVIOUS) if self._previous else self._stored
         self._skip = frame_skip

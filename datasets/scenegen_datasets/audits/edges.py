@@ -30,10 +30,8 @@ OFFSET_BAR_PX, WIDTH_BAR_PX = 0.5, 4.0
 
 _CONTRAST_K, _REFERENCE_K = 2.0, 290.0
 _MIXED = (0.1, 0.9)
-_FEWEST, _FEW = (
-    50,
-    400,
-)  # to read a profile from; to call a shift a fault: few may all be of one crown, or one turn
+_FEWEST = 50  # to read a profile from
+_FEW = 400  # fewer may all be of one crown, or one turn: a shift there is no fault yet
 _PER_FRAME = 400
 
 

@@ -23,8 +23,8 @@ from scenegen_datasets.exports.marker import (
     Marker,
     claim,
     clean,
+    kept_clips,
     read_marker,
-    refuse_others,
 )
 from scenegen_datasets.exports.plan import Plan, Request, plan_of
 from scenegen_datasets.exports.stage import Stage
@@ -98,14 +98,13 @@ def export(request: Request, processes: int = 1, told: Told | None = None) -> Ou
     with DirectoryLock(root):
         claim(root, plan.identity)
         clean(root)
-        refuse_others(root, plan.sums)
-        markers = {job.name: read_marker(root, job.name) for job in plan.jobs}
-        missing = [k for k, job in enumerate(plan.jobs) if markers[job.name] is None]
+        kept = kept_clips(root, plan.sums)
+        missing = [k for k, job in enumerate(plan.jobs) if job.name not in kept]
         if missing:
             remove(root / SUMMARY)
         _make(request, plan, missing, processes, told or (lambda done, total: None))
-        markers |= {plan.jobs[k].name: read_marker(root, plan.jobs[k].name) for k in missing}
-        return _finish(request, plan, markers, len(missing))
+        made = {plan.jobs[k].name: read_marker(root, plan.jobs[k].name) for k in missing}
+        return _finish(request, plan, kept | made, len(missing))
 
 
 def _prepare(request: Request, plan: Plan) -> None:

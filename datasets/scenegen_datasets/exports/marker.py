@@ -66,8 +66,8 @@ def claim(root: Path, identity: Mapping[str, Any]) -> None:
         raise InputError(f"{root} holds another export ({'; '.join(differing[:6])}); choose another --out")
 
 
-def refuse_others(root: Path, sums: Mapping[str, str]) -> None:
-    """Refuse to go on where a clip is kept that the dataset does not hold, or holds another of its name.
+def kept_clips(root: Path, sums: Mapping[str, str]) -> dict[str, Marker]:
+    """Markers of the clips that are whole; refuses to go on beside one that the dataset holds no more, or otherwise.
 
     Parameters
     ----------
@@ -79,19 +79,25 @@ def refuse_others(root: Path, sums: Mapping[str, str]) -> None:
     Raises
     ------
     InputError
-        Naming the clip.
+        Naming such a clip.
     """
+    kept = {}
     for path in sorted((root / _CLIPS).glob("[!.]*.json")):
         name, marker = path.stem, _proof(path)
         if name not in sums:
             raise InputError(
                 f"{root} holds {name}, which is not asked for or not there; choose another --out"
             )
-        if marker is not None and marker.clip != sums[name]:
+        if marker is None:
+            continue
+        if marker.clip != sums[name]:
             raise InputError(
                 f"{root} holds {name} as it was before it changed in the dataset; remove {root} and export again, "
                 "or choose another --out"
             )
+        if _is_whole(root, marker):
+            kept[name] = marker
+    return kept
 
 
 def write_marker(root: Path, clip: str, marker: Marker) -> None:
@@ -109,13 +115,7 @@ def write_marker(root: Path, clip: str, marker: Marker) -> None:
 def read_marker(root: Path, clip: str) -> Marker | None:
     """Marker of a clip, or None if it has none, a damaged one, or one whose files are gone or of other sizes."""
     marker = _proof(_path(root, clip))
-    if marker is None:
-        return None
-    try:
-        sizes = {name: (root / name).lstat().st_size for name in marker.files}
-    except OSError:
-        return None
-    return marker if sizes == marker.files else None
+    return marker if marker is not None and _is_whole(root, marker) else None
 
 
 def clean(root: Path) -> None:
@@ -133,6 +133,14 @@ def _proof(path: Path) -> Marker | None:
         return Marker(body["files"], Written(body["counts"], body["facts"]), body["clip"])
     except (DatasetError, KeyError, OSError):
         return None
+
+
+def _is_whole(root: Path, marker: Marker) -> bool:
+    """Whether its files are there, with the sizes it tells."""
+    try:
+        return all((root / name).lstat().st_size == size for name, size in marker.files.items())
+    except OSError:
+        return False
 
 
 def _path(root: Path, clip: str) -> Path:

@@ -83,7 +83,7 @@ def in_numbers(world: World) -> tuple[str, str]:
     return (
         f"{len(world.mesh.faces):,} triangles   {len(world.sites.area):,} thermal sites   "
         f"{count_objects(world):,} objects   {len(count_classes(world))} classes",
-        "   ".join(f"{name} {count:,}" for name, count in world.counts),  # right for one viaduct, too,
+        "   ".join(f"{name} {count:,}" for name, count in world.counts),  # right for one viaduct, too
     )
 
 

@@ -44,11 +44,7 @@ def countryside(
     shop : Workshop
     rng : numpy.random.Generator
     """
-    open_land, crops, road = (
-        shop.builder.new_objects(),
-        shop.builder.new_objects(),
-        shop.builder.new_objects(),
-    )
+    open_land, crops, road = (shop.builder.new_objects() for _ in range(3))
     regions = [Region(land, grass, int(Semantic.GRASS), open_land)]
     taken = np.array([place, *shapely.buffer(roads, _VERGE_M)], dtype=object)
     keep = clear_of(fields, taken) & first_come(fields) & shapely.within(fields, land.buffer(-_HEM_M))

@@ -5,8 +5,8 @@ from typing import Any
 import pytest
 
 from scenegen.foundation.errors import InputError
-from scenegen.foundation.words import counted
-from scenegen_cli.console import size, span, table
+from scenegen.foundation.words import counted, size
+from scenegen_cli.console import span, table
 from scenegen_cli.parse import parse, parse_size, split_recipe_flags
 from scenegen_cli.render import Render
 
